@@ -72,21 +72,14 @@ _LARGEST = 3000
 
 @dataclass(frozen=True)
 class Solved:
-    """The only positive solution of an equation for one of its symbols.
-
-    Parameters
-    ----------
-    value : Expr
-        What the symbol is.
-    pivots : tuple of Expr
-        What was divided by: where one is zero the equation does not determine the symbol.
-    powers : tuple of Expr
-        What must be positive for a solution to exist: each is the value of a power with a positive base.
-    """
+    """The only positive solution of an equation for one of its symbols."""
 
     value: Expr
+    """What the symbol is."""
     pivots: tuple[Expr, ...] = ()
+    """What was divided by: where one is zero the equation does not determine the symbol."""
     powers: tuple[Expr, ...] = ()
+    """What must be positive for a solution to exist: each is the value of a power with a positive base."""
 
 
 def solve_for(unknown: Expr, left: Expr, right: Expr, facts: Facts = NOTHING) -> Solved | None:

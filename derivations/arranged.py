@@ -41,13 +41,8 @@ class Sides:
 class Arranged:
     """Equations, each solved for one symbol where that can be, and points at which all may hold.
 
-    Parameters
-    ----------
-    statements : sequence of Statement
-    vocabulary : Vocabulary
-        Where free symbols are drawn from.
-    left_open : collection of Equation
-        What is not to be solved; inequalities of these are written with what remains, a > b as a = b + t.
+    `vocabulary`: where free symbols are drawn from. `left_open`: what is not to be solved; inequalities of
+    these are written with what remains, a > b as a = b + t.
     """
 
     def __init__(

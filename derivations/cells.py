@@ -24,21 +24,14 @@ def running(expressions: Iterable[Any]) -> list[tuple[Any, ...]]:
 
 @dataclass(frozen=True)
 class Cells:
-    """Plain forms of the cells of some expressions.
-
-    Parameters
-    ----------
-    names : dict
-        What each plain form stands for: a cell, or the base of a column.
-    flat : dict
-        The plain form of each cell: a symbol, or a row of a column that is kept together.
-    lengths : dict
-        Of each column that is summed, by its base: how many rows it has, as far as the sums say.
-    """
+    """Plain forms of the cells of some expressions."""
 
     names: dict[Any, Any]
+    """What each plain form stands for: a cell, or the base of a column."""
     flat: dict[Indexed, Expr]
+    """The plain form of each cell: a symbol, or a row of a column that is kept together."""
     lengths: dict[Any, tuple[Expr, ...]]
+    """Of each column that is summed, by its base: how many rows it has, as far as the sums say."""
 
     @classmethod
     def of(cls, expressions: list[Any]) -> Cells:

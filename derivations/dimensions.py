@@ -143,10 +143,6 @@ class Dimensions:
     """Finds dimensions of expressions in the symbols of a vocabulary.
 
     A subclass that knows other cells says so in `of_cell`, and how it complains in `fail`.
-
-    Parameters
-    ----------
-    vocabulary : Vocabulary
     """
 
     def __init__(self, vocabulary: Vocabulary) -> None:
@@ -264,12 +260,8 @@ class _OfLedger(Dimensions):
 def mixed(equation: Equation, vocabulary: Vocabulary) -> str:
     """Say what an equation mixes that cannot be equal, added or compared; empty where nothing was found.
 
-    Parameters
-    ----------
-    equation : Equation
-    vocabulary : Vocabulary
-        The units of its symbols. An equation with a symbol that it lacks is not judged; whole numbers are
-        pure.
+    `vocabulary`: the units of its symbols. An equation with a symbol that it lacks is not judged; whole
+    numbers are pure.
     """
     dimensions = _OfLedger(vocabulary)
     try:

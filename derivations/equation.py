@@ -34,40 +34,27 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Equation:
-    """A numbered statement that some expressions are equal, in the source's own words.
-
-    Parameters
-    ----------
-    number : str
-        Its number in the source, ``"(11)"``; numbers that begin with L are this project's own.
-    members : tuple of Expr
-        Two or more expressions said to be equal, as the author orders their terms; an inequality is
-        one relation.
-    because : str
-        Why it holds, in a sentence.
-    kind : Kind
-        Definition, assumption, or a claim that needs a derivation.
-    title : str
-        What it is called in prose.
-    part : str
-        Which line of a numbered group, ``"a"`` of ``(12a)``.
-    defines : Expr or None
-        The quantity that this line determines.
-    printed : tuple of Expr or None
-        What the source prints, where that differs from what is meant.
-    conditions : tuple of Rel
-        Relations without which it does not hold.
-    """
+    """A numbered statement that some expressions are equal, in the source's own words."""
 
     number: str
+    """Its number in the source, ``"(11)"``; numbers that begin with L are this project's own."""
     members: tuple[Expr, ...]
+    """Two or more expressions said to be equal, as the author orders their terms; an inequality is one
+    relation."""
     because: str
+    """Why it holds, in a sentence."""
     kind: Kind = Kind.CLAIM
+    """Definition, assumption, or a claim that needs a derivation."""
     title: str = ""
+    """What it is called in prose."""
     part: str = ""
+    """Which line of a numbered group, ``"a"`` of ``(12a)``."""
     defines: Expr | None = None
+    """The quantity that this line determines."""
     printed: tuple[Expr, ...] | None = None
+    """What the source prints, where that differs from what is meant."""
     conditions: tuple[Rel, ...] = ()
+    """Relations without which it does not hold."""
     parent: Equation | None = field(default=None, repr=False)
     renamed: tuple[tuple[tuple[Any, Any], ...], ...] = field(default=(), repr=False)
     """What `at` put in, call by call: a proof makes the instance again from the parent."""

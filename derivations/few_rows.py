@@ -29,24 +29,16 @@ _FEWEST, _MOST, _CHOICES = 3, 12, 500
 
 @dataclass(frozen=True)
 class Statement:
-    """What is to hold: an equation, as a step uses it.
-
-    Parameters
-    ----------
-    source : Equation
-        What a reader knows it as.
-    sides : tuple of Expr
-        What is equal; empty for conditions alone.
-    conditions : tuple of Boolean
-        Of an assumption, what holds with it; of a claim, where it holds.
-    hints : tuple of Expr
-        What it may be solved for, the best first.
-    """
+    """What is to hold: an equation, as a step uses it."""
 
     source: Equation
+    """What a reader knows it as."""
     sides: tuple[Expr, ...]
+    """What is equal; empty for conditions alone."""
     conditions: tuple[Boolean, ...]
+    """Of an assumption, what holds with it; of a claim, where it holds."""
     hints: tuple[Expr, ...] = ()
+    """What it may be solved for, the best first."""
 
     @property
     def parts(self) -> tuple[Any, ...]:
@@ -60,12 +52,7 @@ class Statement:
 
 
 class FewRows:
-    """Statements with a few rows in each column, and a plain symbol for each cell.
-
-    Parameters
-    ----------
-    statements : sequence of Statement
-    """
+    """Statements with a few rows in each column, and a plain symbol for each cell."""
 
     def __init__(self, statements: Sequence[Statement]) -> None:
         self.names: dict[Any, Any] = {}

@@ -39,11 +39,7 @@ def is_assumed(premise: Equation) -> bool:
 def says(said: Equation, equation: Equation) -> bool:
     """Whether an equation says all that another one does, up to a number that multiplies it.
 
-    Parameters
-    ----------
-    said : Equation
-        What may be contained in the other.
-    equation : Equation
+    `said`: what may be contained in the other.
     """
     wanted, there = (_differences(each) for each in (said, equation))
     neighbours = [wanted.get((n, n + 1)) for n in range(len(said.members) - 1)]

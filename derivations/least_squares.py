@@ -61,8 +61,8 @@ class FitQuantity:
         What the ledger says of it; the last side is its formula, if it has no step.
     needs : tuple of (Rel, str)
         What must hold, and what it means if it does not.
-    step : Expr or None
-        Of a parameter that is sought: the next value.
+    step, start : Expr or None
+        Of what is sought by steps: the next value, and the first one if its author says none.
     """
 
     name: str
@@ -72,6 +72,7 @@ class FitQuantity:
     entry: Equation | Derivation
     needs: tuple[tuple[Rel, str], ...] = ()
     step: Expr | None = None
+    start: Expr | None = None
 
     @property
     def equation(self) -> Equation:
@@ -104,6 +105,9 @@ class LeastSquares:
         What each is.
     u : Expr or None
         Of a row, if they are not alike: the standard uncertainty of what was observed.
+    others : mapping of Indexed to Expr
+        What else of the model was observed with errors, and its standard uncertainty. Then the true values
+        of a row are sought, too: the point of the model that is nearest, counted in these.
     index, size : Symbol
         The number of a row, and how many there are.
     number : str
@@ -115,8 +119,8 @@ class LeastSquares:
 
     Attributes
     ----------
-    linear : bool
-        Whether the model is linear in its parameters.
+    flat, linear : bool
+        Whether the model is linear in its parameters, and whether these follow without steps.
     helpers, results : list of FitQuantity
         What only leads there, and what is sought: the parameters, their standard uncertainties and
         correlations by scatter, the scatter, of each row the fitted value and the residual, and the sum of
@@ -133,6 +137,7 @@ class LeastSquares:
         what: str,
         parameters: Mapping[Symbol, str],
         u: Expr | None,
+        others: Mapping[Indexed, Expr],
         index: Symbol,
         size: Symbol,
         number: str,
@@ -143,8 +148,13 @@ class LeastSquares:
         self.parameters, self.words = tuple(parameters), tuple(parameters.values())
         self.index, self.size, self.number, self.own, self.rows = index, size, number, own, rows
         self.count = len(self.parameters)
-        self.slopes = tuple(diff(model, each) for each in self.parameters)
-        self.linear = not any(slope.has(*self.parameters) for slope in self.slopes)
+        feet = {each: self._cell(f"{called}_at_{each.base}", rows=True) for each in others}
+        self.feet, self.others, self.true = feet, others, model.xreplace(feet)
+        self.u: Expr = Integer(1) if u is None else u
+        self.tilts = {each: diff(self.true, foot) for each, foot in feet.items()}
+        self.slopes = tuple(diff(self.true, each) for each in self.parameters)
+        self.flat = not any(slope.has(*self.parameters) for slope in self.slopes)
+        self.linear = self.flat and not others
         self.enough: tuple[Rel, ...] = (size > self.count,)
         self.pairs = tuple(combinations(range(self.count), 2))
         names = map(str, self.parameters)
@@ -153,6 +163,7 @@ class LeastSquares:
             **{f"s_{each}": f"s_{each}" for each in self.parameters},
             **{name: name for name in (self._together(*pair) for pair in self.pairs)},
             **{name: f"{called}_{name}" for name in ("s", "fitted", "residual", "S")},
+            **{f"at_{each.base}": str(foot.base) for each, foot in feet.items()},
         }
         """What the results are called by the fit, and in all."""
         self._parts = dict(
@@ -162,20 +173,26 @@ class LeastSquares:
         self._found: dict[str, FitQuantity] = {}
         self.claims: list[Derivation] = []
         self.weight: Expr = Integer(1)
+        bent = any(tilt.has(*feet.values()) for tilt in self.tilts.values())
+        beyond = (tilt * (each - feet[each]) for each, tilt in self.tilts.items())
+        self.tangent = self.true + Add(*beyond) if bent else model
         if u is not None:
-            above = StrictGreaterThan(u, 0)
+            spread = u**2 + Add(*((tilt * others[each]) ** 2 for each, tilt in self.tilts.items()))
+            above = StrictGreaterThan(spread if feet else u, 0)
             needs = (
                 ()
                 if above == true
                 else ((above, "a standard uncertainty that rows are weighed by is above zero"),)
             )
+            self.weighing = 1 / spread
             self.weight = self._helper(
-                "w", 1 / u**2, "weight of a row", "w%s", rows=True, positive=True, needs=needs
+                "w", self.weighing, "weight of a row", "w%s", rows=True, positive=True, needs=needs
             )
-        self.fitted = self._result("fitted", model, f"{what}, fitted", rows=True)
+        self.fitted = self._result("fitted", self.tangent, f"{what}, fitted", rows=True)
         self.residual = self._result("residual", observed - self.fitted, f"{what}, residual", rows=True)
         self._orthogonal()
         self._solve()
+        self._approach()
         self._scatter()
 
     @property
@@ -319,9 +336,9 @@ class LeastSquares:
             self._found |= {part.name: part for part in found}
             return
         self.helpers += reversed(found)
-        part = self._part()
+        self.part = self._part()
         for m in range(self.count):
-            self._seek(m, part)
+            self._seek(m, self.part)
 
     def _part(self) -> Expr:
         """How much of a step is taken: all of it where the sum of squares does not grow, else less."""
@@ -329,7 +346,10 @@ class LeastSquares:
         def squares(part: Rational) -> Expr:
             pairs = zip(self.parameters, self.unknowns, strict=True)
             moved = {each: each + part * step for each, step in pairs}
-            return self.total((self.observed - self.model.xreplace(moved)) ** 2)
+            left = (self.observed - self.tangent.xreplace(moved)) ** 2
+            if not self.feet:
+                return self.total(left)
+            return Sum(self.weighing.xreplace(moved) * left, (self.index, 1, self.size))
 
         now = (1 + _ROUNDING) * self.total(self.residual**2)
         ways = [(part, squares(part) <= now) for part in _PARTS[:-1]]
@@ -355,7 +375,11 @@ class LeastSquares:
 
     @property
     def _squares(self) -> Expr:
-        return self.total((self.observed - self.model) ** 2)
+        if not self.feet:
+            return self.total((self.observed - self.model) ** 2)
+        off = ((each - foot) ** 2 / self.others[each] ** 2 for each, foot in self.feet.items())
+        squares = (self.observed - self.true) ** 2 / self.u**2 + Add(*off)
+        return Sum(squares, (self.index, 1, self.size))
 
     def _normal(self, m: int, j: int) -> Equation:
         """The normal equation of an unknown, when the first m are out."""
@@ -401,9 +425,32 @@ class LeastSquares:
         self._found[str(parameter)] = FitQuantity(str(parameter), word, "", parameter, said, step=step)
         title = f"slope of the sum of squares by {parameter}"
         claim = self._said(next(self.own), (diff(self._squares, parameter), -2 * slope), title)
-        own = self._definitions(self.columns[0][m], self.residual, self.fitted)
+        rows = (self.columns[0][m], self.residual, self.fitted, *(self.weight,) * bool(self.feet))
+        own = (*self._definitions(*rows), *self._nearest)
         step_of = _step(claim, ((said, slope), *own), "Differentiate the sum of squares.")
         self.claims.append(Derivation((step_of,)))
+
+    @property
+    def _nearest(self) -> Iterator[Pair]:
+        """Where the true values of a row are, solved for what was observed of them."""
+        for each, foot in self.feet.items():
+            off = self.others[each] ** 2 * self.tilts[each] * (self.observed - self.true) / self.u**2
+            because = "half the slope of the sum of squares by it vanishes where that is least"
+            title = f"{each.base} of the nearest point of the model"
+            yield self._said("", (each, foot - off), title, Kind.DEFINITION, because), each.base
+
+    def _approach(self) -> None:
+        """The true values of a row, as far as the parameters are known: along the tangent there."""
+        moved = Add(*(s * step for s, step in zip(self.columns[0], self.unknowns, strict=True)))
+        for each, foot in self.feet.items():
+            name, along = f"at_{each.base}", self.others[each] ** 2 * self.tilts[each] * self.weight
+            members, title = (foot, each + along * self.residual), f"{each.base} of the nearest point"
+            because = "from there to the row it is as far as the weights make it"
+            claim = self._said(self.number, members, title, because=because, part=self._parts[name])
+            own = (*self._definitions(self.residual, self.fitted, self.weight), *self._nearest)
+            entry = Derivation((_step(claim, own, "Put in where that is."),))
+            step = each + along * (self.residual - self.part * moved)
+            self._found[name] = FitQuantity(str(foot.base), title, "", foot, entry, step=step, start=each)
 
     # --- how well
 

@@ -31,7 +31,7 @@ __all__ = [
     "POINTS",
     "check_step",
     "prove",
-    "prove_equation",
+    "prove_entry",
 ]
 
 NOT_REDUCED = (
@@ -49,7 +49,6 @@ def check_step(step: Step, vocabulary: Vocabulary = NO_WORDS) -> StepProof:
 
     Parameters
     ----------
-    step : Step
     vocabulary : Vocabulary
         Of its ledger: where its symbols are sampled, and what they are called.
 
@@ -118,24 +117,11 @@ def _grounds(step: Step, reached: Grounds) -> tuple[Equation, ...]:
     return tuple(dict.fromkeys(ground for grounds in behind for ground in grounds))
 
 
-def prove_equation(
-    entry: Equation | Derivation, known: Grounds | None = None, ledger: Ledger | None = None
-) -> Proof:
-    """Decide one entry of a ledger, given the equations that stand before it.
+def prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -> tuple[Proof, Grounds]:
+    """A proof of one entry of a ledger by what stands before it, and the equations that stand after it.
 
-    Parameters
-    ----------
-    entry : Equation or Derivation
-    known : mapping of Equation to tuple of Equation, optional
-        What a step may rest on: the entries before this one that passed, each with what it finally rests on.
-    ledger : Ledger, optional
-        Where it stands: the words of its symbols, and the claims that it might rest on in a circle.
+    `known`: the entries before this one that passed, each with what it finally rests on.
     """
-    return _prove_entry(entry, known or {}, ledger or Ledger(()))[0]
-
-
-def _prove_entry(entry: Equation | Derivation, known: Grounds, ledger: Ledger) -> tuple[Proof, Grounds]:
-    """A proof, and the equations that stand after it."""
     words = ledger.vocabulary
     if isinstance(entry, Equation):
         if entry.kind is Kind.CLAIM:
@@ -191,14 +177,9 @@ def prove(
 ) -> tuple[Proof, ...]:
     """Decide the equations of a ledger, in its order; nothing may rest on what comes later.
 
-    Parameters
-    ----------
-    ledger : Ledger
-    begin : callable, optional
-        Told of each equation before it is decided: all of them take a second or two.
-    only : collection of str, optional
-        The labels of those that are asked for: what they do not rest on is not derived then. What is assumed
-        is looked at in any case, for they have to hold together with all of it.
+    `begin`: told of each equation before it is decided: all of them take a second or two. `only`: the labels
+    of those that are asked for: what they do not rest on is not derived then. What is assumed is looked at in
+    any case, for they have to hold together with all of it.
     """
     needed = None if only is None else behind((ledger[label] for label in only), ledger)
     proofs: list[Proof] = []
@@ -209,7 +190,7 @@ def prove(
             continue
         if begin is not None:
             begin(claim)
-        proof, known = _prove_entry(entry, known, ledger)
+        proof, known = prove_entry(entry, known, ledger)
         proofs.append(proof)
     if needed is None or not _holds_together(ledger, proofs):
         proofs = _refuse_conflicts(ledger, proofs, known)

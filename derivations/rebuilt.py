@@ -66,12 +66,7 @@ def _alike(new: Basic, old: Basic) -> bool:
 def renamed(expression: Any, names: Mapping[Any, Any]) -> Any:
     """The expression with other symbols or cells, of each of which is assumed what is assumed of its own.
 
-    Parameters
-    ----------
-    expression : Basic
-        As sympy evaluates it.
-    names : mapping
-        No two have the same new name.
+    `expression`: as sympy evaluates it. `names`: no two have the same new name.
     """
     known: dict[Any, Any] = {old: new for old, new in names.items() if old != new}
 

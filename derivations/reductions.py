@@ -82,10 +82,7 @@ class Member(Function):  # type: ignore[misc] # sympy has no types
 
     What is taken by order has it as a mark of the same: the terms are those of the group alone.
 
-    Parameters
-    ----------
-    row, group : Symbol
-        Their running numbers.
+    `row` and `group`: their running numbers.
     """
 
     nargs = 2

@@ -35,18 +35,12 @@ _FARTHEST = mpmath.mpf(10) ** 9
 
 @dataclass(frozen=True)
 class Sought:
-    """What came of a search.
-
-    Parameters
-    ----------
-    point : mapping of str to str, optional
-        Where everything holds; None if no point was found.
-    within : tuple of Statement
-        Where none was found: as few of the statements as none was found for either, in their order.
-    """
+    """What came of a search."""
 
     point: Mapping[str, str] | None
+    """Where everything holds; None if no point was found."""
     within: tuple[Statement, ...] = ()
+    """Where none was found: as few of the statements as none was found for either, in their order."""
 
 
 def seek(statements: Sequence[Statement], vocabulary: Vocabulary) -> Sought:
@@ -55,11 +49,7 @@ def seek(statements: Sequence[Statement], vocabulary: Vocabulary) -> Sought:
     What did not hold at some point is tried alone, with all that it rests on, and is not solved in the next
     round: steps may lead to where it is positive and its conditions hold.
 
-    Parameters
-    ----------
-    statements : sequence of Statement
-    vocabulary : Vocabulary
-        Where free symbols are drawn from, to begin with.
+    `vocabulary`: where free symbols are drawn from, to begin with.
     """
     left_open: set[Equation] = set()
     tried: set[frozenset[Equation]] = set()

@@ -30,45 +30,30 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class System:
-    """A step whose premises are solved.
-
-    Parameters
-    ----------
-    claim : tuple of Expr
-        The members that are said to be equal.
-    premises : tuple of (str, Expr, Expr)
-        Label and both sides of what is assumed.
-    chain : tuple of (Expr, Solved)
-        Each eliminated symbol, in the order of evaluation: in terms of free symbols and of those before it.
-    solution : dict
-        Each eliminated symbol in terms of the free ones alone.
-    conditions : tuple of Rel
-        What the claim says of its domain, and where the cells exist that it names.
-    facts : Facts
-        What follows from them for the algebra.
-    inside : str
-        Where its symbols are known to lie besides, as a sentence goes on.
-    inner : Facts
-        The facts without the ends of the domain: what holds there and is continuous holds at them, too.
-    multiplied : tuple of Expr or None
-        Factor and both sides of the premise that is not solved: factor times premise is the claim.
-    names : dict
-        What each plain symbol stands for: a cell, or the base of a column under a sum.
-    vocabulary : Vocabulary
-        What the symbols mean.
-    """
+    """A step whose premises are solved."""
 
     claim: tuple[Expr, ...]
+    """The members that are said to be equal."""
     premises: tuple[tuple[str, Expr, Expr], ...]
+    """Label and both sides of what is assumed."""
     chain: tuple[tuple[Expr, Solved], ...]
+    """Each eliminated symbol, in the order of evaluation: in terms of free symbols and of those before it."""
     solution: dict[Expr, Expr]
+    """Each eliminated symbol in terms of the free ones alone."""
     conditions: tuple[Rel, ...]
+    """What the claim says of its domain, and where the cells exist that it names."""
     facts: Facts
+    """What follows from them for the algebra."""
     inside: str
+    """Where its symbols are known to lie besides, as a sentence goes on."""
     inner: Facts
+    """The facts without the ends of the domain: what holds there and is continuous holds at them, too."""
     multiplied: tuple[Expr, Expr, Expr] | None
+    """Factor and both sides of the premise that is not solved: factor times premise is the claim."""
     names: dict[Any, Any]
+    """What each plain symbol stands for: a cell, or the base of a column under a sum."""
     vocabulary: Vocabulary
+    """What the symbols mean."""
 
     @property
     def expressions(self) -> tuple[Any, ...]:
@@ -118,7 +103,6 @@ def prepare(step: Step, vocabulary: Vocabulary) -> System:
 
     Parameters
     ----------
-    step : Step
     vocabulary : Vocabulary
         Of the ledger that it belongs to.
 

@@ -48,7 +48,6 @@ def text(expression: Any, vocabulary: Vocabulary) -> str:
 
     Parameters
     ----------
-    expression : Expr, Boolean or other Basic
     vocabulary : Vocabulary
         What its symbols are called; those it does not have keep their names.
 
@@ -71,10 +70,7 @@ def text_of_equation(equation: Equation, vocabulary: Vocabulary) -> str:
 class Wording:
     """Writes in the words of one vocabulary.
 
-    Parameters
-    ----------
-    vocabulary : Vocabulary
-        What symbols are called; those it does not have keep their names.
+    `vocabulary`: what symbols are called; those it does not have keep their names.
     """
 
     def __init__(self, vocabulary: Vocabulary) -> None:

@@ -30,21 +30,14 @@ _NEARLY_ZERO = Rational(1, 10**6)
 
 @dataclass(frozen=True)
 class Contradiction:
-    """Statements that were not seen to hold together, as few as there were found.
-
-    Parameters
-    ----------
-    culprit : Equation
-        The last of them: without it, everything before it in the ledger holds together.
-    others : tuple of Equation
-        What it does not agree with.
-    certain : bool
-        Whether they cannot hold together; else no point was found at which they do.
-    """
+    """Statements that were not seen to hold together, as few as there were found."""
 
     culprit: Equation
+    """The last of them: without it, everything before it in the ledger holds together."""
     others: tuple[Equation, ...]
+    """What it does not agree with."""
     certain: bool
+    """Whether they cannot hold together; else no point was found at which they do."""
 
     @property
     def sentence(self) -> str:
@@ -68,13 +61,8 @@ def conflict(
 ) -> Contradiction | None:
     """What of a ledger does not agree with the rest; None where a point was found at which all of it holds.
 
-    Parameters
-    ----------
-    ledger : Ledger
-    standing : frozenset of Equation
-        Of the ledger, what nothing was found against.
-    claims : frozenset of Equation
-        Of these, what was proved without going to a limit.
+    `standing`: of the ledger, what nothing was found against. `claims`: of these, what was proved without
+    going to a limit.
     """
     if ledger.parts:
         parts = (replace(ledger, entries=entries, parts=()) for entries in ledger.parts)

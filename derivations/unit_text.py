@@ -48,27 +48,18 @@ Open = tuple[tuple[str, str, Power], ...]
 
 @dataclass(frozen=True)
 class ParsedUnit:
-    """A unit as printed, with its exact size.
-
-    Parameters
-    ----------
-    text : str
-        As printed.
-    scale : Fraction
-        One of it in SI; a fraction to 60 digits, where it is none.
-    dimension : tuple of (str, int or Fraction)
-        Powers of SI's base units, by name; empty for a pure number and for an angle.
-    open : tuple of (str, str, int or Fraction)
-        Powers that hang on a cell: of a base unit, the cell's name, and how often it counts.
-    zero : Fraction
-        Its zero in SI: 273.15 of degC, whose differences are those of K.
-    """
+    """A unit as printed, with its exact size."""
 
     text: str
+    """As printed."""
     scale: Fraction
+    """One of it in SI; a fraction to 60 digits, where it is none."""
     dimension: Dimension
+    """Powers of SI's base units, by name; empty for a pure number and for an angle."""
     open: Open = ()
+    """Powers that hang on a cell: of a base unit, the cell's name, and how often it counts."""
     zero: Fraction = Fraction(0)
+    """Its zero in SI: 273.15 of degC, whose differences are those of K."""
 
     @property
     def is_si(self) -> bool:

@@ -58,36 +58,25 @@ class Quantity:
     """A physical quantity, written plain (``x_m.symbol``) or for test number k (``x_m[k]``).
 
     Both carry the same assumptions, so the algebra of a claim for all k is the algebra of the claim for one.
-
-    Parameters
-    ----------
-    name : str
-        The name in the field and of its cell, ``x_m``.
-    meaning : str
-        What it is, in words.
-    unit : str
-        SI unit as text; an exponent may be a symbol's name (``N/m^alpha``).
-    latex : str
-        How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number).
-    span : tuple of float
-        The interval in which proofs sample it, in SI.
-    positive : bool
-        Whether it is positive on the domain of every model here (a logarithm is not).
-    text : str
-        How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript.
-    low, high : float, optional
-        Between which it is known to lie, in SI: nothing else is let in.
     """
 
     name: str
+    """The name in the field and of its cell, ``x_m``."""
     meaning: str
+    """What it is, in words."""
     unit: str
+    """SI unit as text; an exponent may be a symbol's name (``N/m^alpha``)."""
     latex: str
+    """How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number)."""
     span: tuple[float, float] = (0.5, 2.0)
+    """The interval in which proofs sample it, in SI."""
     positive: bool = True
+    """Whether it is positive on the domain of every model here (a logarithm is not)."""
     text: str = ""
+    """How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript."""
     low: float | None = None
     high: float | None = None
+    """`low` and `high`: between which it is known to lie, in SI: nothing else is let in."""
 
     def called(self, subscript: str = "") -> str:
         """How a terminal shows it, of a row or of all."""
@@ -125,10 +114,6 @@ class Quantity:
 
 class Vocabulary(Mapping[str, Quantity]):
     """Quantities by their names, in the order in which they were given.
-
-    Parameters
-    ----------
-    *quantities : Quantity
 
     Raises
     ------

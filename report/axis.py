@@ -21,21 +21,14 @@ __all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "Repeat
 
 @dataclass(frozen=True)
 class Axis:
-    """An index set whose rows come with the data, such as the tests of a campaign.
-
-    Parameters
-    ----------
-    name : str
-        ``tests``, ``pairs``, ``points``.
-    index : Symbol
-        The running number of a row in formulas, ``k``.
-    size : Symbol
-        How many rows there are: the upper limit of sums over the axis.
-    """
+    """An index set whose rows come with the data, such as the tests of a campaign."""
 
     name: str
+    """``tests``, ``pairs``, ``points``."""
     index: Symbol
+    """The running number of a row in formulas, ``k``."""
     size: Symbol
+    """How many rows there are: the upper limit of sums over the axis."""
     _WORDS: ClassVar[tuple[str, ...]] = ("index_name", "size_name")
 
     @property
@@ -115,10 +108,21 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class PairAxis(Axis):
-    """Pairs of another axis' rows in lexical order: every i < j, or what a subclass chooses."""
+class _Resting(Axis):
+    """Rows that are made of those of another axis."""
 
     of: Axis
+
+    @property
+    def parents(self) -> tuple[Axis, ...]:
+        """The axis that is paired, repeated or grouped."""
+        return (self.of,)
+
+
+@dataclass(frozen=True)
+class PairAxis(_Resting):
+    """Pairs of another axis' rows in lexical order: every i < j, or what a subclass chooses."""
+
     first: Symbol
     second: Symbol
     _WORDS = (*Axis._WORDS, "members", "choice")
@@ -137,11 +141,6 @@ class PairAxis(Axis):
     def named(self) -> dict[str, Axis]:
         """The same by what the indices are called."""
         return {self.index_name: self, **dict.fromkeys(self.members, self.of)}
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axis that is paired."""
-        return (self.of,)
 
     @property
     def chosen(self) -> Boolean:
@@ -168,10 +167,9 @@ class PairAxis(Axis):
 
 
 @dataclass(frozen=True)
-class RepeatAxis(Axis):
+class RepeatAxis(_Resting):
     """A number of rows, counted by `step` = 1, 2, ..., for each row of another axis."""
 
-    of: Axis
     step: Symbol
     count: str
     """Name of the given scalar that says how many, the same for all."""
@@ -196,11 +194,6 @@ class RepeatAxis(Axis):
     def ordinals(self) -> tuple[Symbol, ...]:
         """The running number within the parent's row, then what the parent's row may use."""
         return (self.step, *self.of.ordinals)
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axis that is repeated."""
-        return (self.of,)
 
     @property
     def repeats(self) -> str:
@@ -253,22 +246,13 @@ class CountedAxis(Axis):
 
 
 @dataclass(frozen=True)
-class MemberAxis(Axis):
-    """Another axis' rows once more, those of one group beside one another: what a group takes sums over.
+class MemberAxis(_Resting):
+    """Another axis' rows once more, those of one group beside one another: what a group takes sums over."""
 
-    Parameters
-    ----------
-    of : Axis
-        Whose rows are grouped.
-    group : Symbol
-        The index of the groups, in whose formulas alone such sums stand.
-    by : str
-        The column of words that says of each row to which group it belongs.
-    """
-
-    of: Axis
     group: Symbol
+    """The index of the groups, in whose formulas alone such sums stand."""
     by: str
+    """The column of words that says of each row to which group it belongs."""
     _WORDS = (*Axis._WORDS, "group_name", "by")
 
     @property
@@ -285,11 +269,6 @@ class MemberAxis(Axis):
     def named(self) -> dict[str, Axis]:
         """The same as what it maps, by what the indices are called."""
         return {self.index_name: self, **self.of.named}
-
-    @property
-    def parents(self) -> tuple[Axis, ...]:
-        """The axis that is grouped."""
-        return (self.of,)
 
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:

@@ -66,18 +66,12 @@ def formats_again(out: Path) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class Built:
-    """What was built.
-
-    Parameters
-    ----------
-    files : tuple of Path
-        Where they are now.
-    told : anything that JSON can hold
-        What there is to tell of the report.
-    """
+    """What was built."""
 
     files: tuple[Path, ...]
+    """Where they are now."""
     told: Any
+    """What there is to tell of the report."""
 
 
 def built(
@@ -90,12 +84,8 @@ def built(
 ) -> Built:
     """Write a report as :func:`build` does, or the very files that were written of the same folder before.
 
-    Parameters
-    ----------
-    study, out, formats, every_engine, tell
-        As for :func:`build`.
-    of : callable
-        What there is to tell of the report, as data that JSON can hold.
+    `study`, `out`, `formats`, `every_engine` and `tell`: as for :func:`build`. `of`: what there is to tell of
+    the report, as data that JSON can hold.
     """
     if not study.folder.is_dir():
         _ = study.inputs  # which tells, before the outputs' folder makes it

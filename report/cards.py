@@ -46,12 +46,7 @@ class NoImpacts(Exception):
 class NotTogether(Exception):
     """What is asked of cards does not go with the codes or the drops.
 
-    Parameters
-    ----------
-    reason, known : str
-        What is wrong, and what to do.
-    option : str
-        Of which option it is told.
+    `reason` and `known`: what is wrong, and what to do. `option`: of which option it is told.
     """
 
     def __init__(self, reason: str, known: str, option: str) -> None:
@@ -61,21 +56,16 @@ class NotTogether(Exception):
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of cards besides their codes, in SI; None where nothing is.
-
-    Parameters
-    ----------
-    prefix : str
-        What stands before the name of an option where it was asked.
-    speed, E, nu, R : float or None
-        The impact speed, Young's modulus and Poisson's ratio of both bodies, the effective radius.
-    """
+    """What is asked of cards besides their codes, in SI; None where nothing is."""
 
     prefix: str = ""
+    """What stands before the name of an option where it was asked."""
     speed: float | None = None
     E: float | None = None
     nu: float | None = None
     R: float | None = None
+    """`speed`, `E`, `nu` and `R`: the impact speed, Young's modulus and Poisson's ratio of both bodies, the
+    effective radius."""
 
     def symbols(self, code: ContactFormula) -> frozenset[Symbol]:
         """Which of Poisson's ratio and radius a code has to know."""
@@ -219,7 +209,6 @@ def swept(
         Whose card they follow; None: the identified law.
     drops, drop, asked
         As for :func:`card`.
-    impacts : int
     step : callable
         Told how many are done.
 

@@ -32,42 +32,29 @@ _SHADES = ((68, 1, 84), (70, 50, 127), (54, 92, 141), (39, 127, 142), (31, 161, 
 
 @dataclass(frozen=True)
 class Series:
-    """What a chart shows of two columns of one axis; a row without a value in both is left out.
-
-    Parameters
-    ----------
-    x, y : str
-        Names of columns, of the sheet or drawn. A ``level`` has a single number as its y.
-    label : str
-        What the legend says, a plain sentence. ``%s`` stands for the rows: ``10 pairs``; where each is a line
-        of its own, ``each test`` or ``test 5``.
-    style : str
-        ``points``; ``line``, where rows are repeated through all points in the order of x; ``level``, over
-        the whole width and named at its end.
-    colour : str
-        ``#rrggbb``; lines of their own go from dark to middling.
-    each : bool
-        Whether each row of the repeated axis is a line of its own, named where it ends.
-    named : bool
-        Whether the points have the names of their rows.
-    value : str
-        A single number that the label is told to be, behind it.
-    bars : bool
-        Whether points have bars of a standard uncertainty to both sides, where one is known.
-    by : str
-        The groups of the points, an index set: those of each have a colour, and its word in the legend.
-    """
+    """What a chart shows of two columns of one axis; a row without a value in both is left out."""
 
     x: str
     y: str
+    """`x` and `y`: names of columns, of the sheet or drawn. A ``level`` has a single number as its y."""
     label: str
+    """What the legend says, a plain sentence. ``%s`` stands for the rows: ``10 pairs``; where each is a line
+    of its own, ``each test`` or ``test 5``."""
     style: str = "line"
+    """``points``; ``line``, where rows are repeated through all points in the order of x; ``level``, over the
+    whole width and named at its end."""
     colour: str = INK
+    """``#rrggbb``; lines of their own go from dark to middling."""
     each: bool = False
+    """Whether each row of the repeated axis is a line of its own, named where it ends."""
     named: bool = False
+    """Whether the points have the names of their rows."""
     value: str = ""
+    """A single number that the label is told to be, behind it."""
     bars: bool = False
+    """Whether points have bars of a standard uncertainty to both sides, where one is known."""
     by: str = ""
+    """The groups of the points, an index set: those of each have a colour, and its word in the legend."""
 
     @property
     def is_cloud(self) -> bool:
@@ -77,57 +64,38 @@ class Series:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart of a figure, and of the workbook.
-
-    Parameters
-    ----------
-    title, x, y : str
-        Plain sentences of the document; the axes get their units from the columns.
-    series : tuple of Series
-        The last is drawn on top.
-    log : str
-        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
-    from_zero : bool
-        Whether both axes begin at zero.
-    zero : bool
-        Whether there is a line at zero across all of it.
-    whole : bool
-        Whether every point is drawn where it is, however far from the lines and the other points.
-    panels : bool
-        Whether each row of the repeated axis has a panel of its own, with axes in common; series are lines.
-    height : float
-        In centimetres, of 16 cm of width; with panels, of a row of these.
-    """
+    """A chart of a figure, and of the workbook."""
 
     title: str
     x: str
     y: str
+    """`title`, `x` and `y`: plain sentences of the document; the axes get their units from the columns."""
     series: tuple[Series, ...]
+    """The last is drawn on top."""
     log: str = ""
+    """The axes with a logarithmic scale: ``x``, ``y`` or ``xy``."""
     from_zero: bool = False
+    """Whether both axes begin at zero."""
     zero: bool = False
+    """Whether there is a line at zero across all of it."""
     whole: bool = False
+    """Whether every point is drawn where it is, however far from the lines and the other points."""
     panels: bool = False
+    """Whether each row of the repeated axis has a panel of its own, with axes in common; series are lines."""
     height: float = 8
+    """In centimetres, of 16 cm of width; with panels, of a row of these."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """The columns that only charts ask for, such as the points of a curve.
-
-    Parameters
-    ----------
-    columns : tuple of Column
-        Formulas as the sheet's.
-    given : mapping of str to int
-        Values of the given columns among them: how often an axis that only charts have repeats its parent.
-    thinned : tuple of str
-        The columns that are of clouds alone, of which a worksheet has no more cells than are drawn.
-    """
+    """The columns that only charts ask for, such as the points of a curve."""
 
     columns: tuple[Column, ...] = ()
+    """Formulas as the sheet's."""
     given: Mapping[str, int] = field(default_factory=dict)
+    """Values of the given columns among them: how often an axis that only charts have repeats its parent."""
     thinned: tuple[str, ...] = ()
+    """The columns that are of clouds alone, of which a worksheet has no more cells than are drawn."""
 
 
 def drawn(name: str, axis: Axis, value: Expr, unit: str = "1", meaning: str = "", **more: Any) -> Column:

@@ -46,7 +46,6 @@ class SheetError(ValueError):
 
     Parameters
     ----------
-    sentence : str
     *about : str
         What it is about, as the workbook calls it; where it is declared may be looked for by the first that
         stands there.
@@ -62,22 +61,15 @@ class SheetError(ValueError):
 
 @dataclass(frozen=True)
 class Given:
-    """The value comes from the user, as printed.
-
-    Parameters
-    ----------
-    source : str
-        Where from.
-    bounds : Bounds
-        What it may be, in SI. Every engine asks for that: any other number is ``#INPUT!``.
-    u_of : str
-        The name of the given column whose standard uncertainties it holds; empty for one that is measured or
-        chosen.
-    """
+    """The value comes from the user, as printed."""
 
     source: str = "given"
+    """Where from."""
     bounds: Bounds = field(default_factory=Bounds)
+    """What it may be, in SI. Every engine asks for that: any other number is ``#INPUT!``."""
     u_of: str = ""
+    """The name of the given column whose standard uncertainties it holds; empty for one that is measured or
+    chosen."""
 
 
 @dataclass(frozen=True)
@@ -103,51 +95,36 @@ class Root:
 
     It is decided for all inputs at once where `form` has a slope of one sign, or `turning_by` says why it
     changes sign at most once between turning points; elsewhere for each row by interval arithmetic.
-
-    Parameters
-    ----------
-    equation : Equation
-        What the root satisfies, as published.
-    form : Equation
-        What is solved: equivalent on the interval, its left side smooth, its right side zero.
-    unknown : Symbol
-        The unknown of `form`.
-    value : Expr
-        The cell's value in terms of the unknown.
-    low, high : Expr
-        The open interval of the unknown.
-    sign_low, sign_high : Expr or None
-        Expressions with the sign of `form` at the ends of the interval, where it cannot be evaluated or
-        where rounding would decide; None evaluates it.
-    turning : tuple of Expr
-        Increasing points of the interval between which `form` changes sign at most once; one that is not
-        a number, or lies outside, does not count. Believed if `turning_by` says why, and not used if not.
-    turning_by : tuple of Equation
-        The statements from which that follows: proved claims of the workbook's ledger.
-    start : Expr
-        A first guess. It costs steps, never truth: the bracket decides.
-    steps : int
-        How many steps a cell gets. One that they do not settle is bisected to the end.
-    none : str
-        What it means when there is no root, for the reader.
-    two : str
-        What it means when there are several.
     """
 
     equation: Equation
+    """What the root satisfies, as published."""
     form: Equation
+    """What is solved: equivalent on the interval, its left side smooth, its right side zero."""
     unknown: Symbol
+    """The unknown of `form`."""
     value: Expr
+    """The cell's value in terms of the unknown."""
     low: Expr
     high: Expr
+    """`low` and `high`: the open interval of the unknown."""
     start: Expr
+    """A first guess. It costs steps, never truth: the bracket decides."""
     sign_low: Expr | None = None
     sign_high: Expr | None = None
+    """`sign_low` and `sign_high`: expressions with the sign of `form` at the ends of the interval, where it
+    cannot be evaluated or where rounding would decide; None evaluates it."""
     turning: tuple[Expr, ...] = ()
+    """Increasing points of the interval between which `form` changes sign at most once; one that is not a
+    number, or lies outside, does not count. Believed if `turning_by` says why, and not used if not."""
     turning_by: tuple[Equation, ...] = ()
+    """The statements from which that follows: proved claims of the workbook's ledger."""
     steps: int = 4
+    """How many steps a cell gets. One that they do not settle is bisected to the end."""
     none: str = "no value of the interval satisfies the equation"
+    """What it means when there is no root, for the reader."""
     two: str = "several values of the interval satisfy the equation"
+    """What it means when there are several."""
 
     @cached_property
     def unknown_name(self) -> str:
@@ -184,24 +161,17 @@ class Iterated:
     All columns on the way from it and back to it are computed again and again, from `start` on: the formulas
     in their order, then the next values of the iterated ones, all at once. What they come to satisfies all
     their equations together, as a spreadsheet's circular references do.
-
-    Parameters
-    ----------
-    equation : Equation
-        What holds when it stays: a statement of the ledger.
-    step : Expr
-        The next value, in cells of the sheet, its own among them. Where it is the value itself, the equation
-        must hold; how fast it leads there is its own matter.
-    start : Expr
-        The first value, in cells that do not rest on it; a number is in SI.
-    none : str
-        What it means when it does not settle, for the reader.
     """
 
     equation: Equation
+    """What holds when it stays: a statement of the ledger."""
     step: Expr
+    """The next value, in cells of the sheet, its own among them. Where it is the value itself, the equation
+    must hold; how fast it leads there is its own matter."""
     start: Expr
+    """The first value, in cells that do not rest on it; a number is in SI."""
     none: str = "the values go on changing"
+    """What it means when it does not settle, for the reader."""
 
     @property
     def statements(self) -> tuple[Equation, ...]:
@@ -219,46 +189,31 @@ Rule = Given | Formula | Root | Iterated
 
 @dataclass(frozen=True)
 class Mentioned:
-    """What the rule of a column names, where its algebra is not at hand.
-
-    Parameters
-    ----------
-    named : tuple of (str, str or None, str or None)
-        The names of a column, of the index, of the axis that it is summed over: those of its references, in
-        the order of the sheet.
-    summed : tuple of str
-        The names of the axes that it takes something over.
-    content : str
-        That of the column.
-    """
+    """What the rule of a column names, where its algebra is not at hand."""
 
     named: tuple[tuple[str, str | None, str | None], ...]
+    """The names of a column, of the index, of the axis that it is summed over: those of its references, in
+    the order of the sheet."""
     summed: tuple[str, ...]
+    """The names of the axes that it takes something over."""
     content: str
+    """That of the column."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """Where the cells of a column are expected, and who says so.
-
-    Parameters
-    ----------
-    inside : Boolean or Bounds
-        What holds where all is as expected: comparisons of cells that the column's axis may name, joined by
-        and; or what the cell itself may be, in SI.
-    says : str
-        What is odd outside, in a few words.
-    source : str
-        The number of the statement that says so, ``(4)``; empty if it is the workbook's own.
-    silent : bool
-        Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it. A
-        column that requires the same in the same words leaves it out; what that does is told by the limit.
-    """
+    """Where the cells of a column are expected, and who says so."""
 
     inside: Boolean | Bounds
+    """What holds where all is as expected: comparisons of cells that the column's axis may name, joined by
+    and; or what the cell itself may be, in SI."""
     says: str
+    """What is odd outside, in a few words."""
     source: str = ""
+    """The number of the statement that says so, ``(4)``; empty if it is the workbook's own."""
     silent: bool = False
+    """Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it. A
+    column that requires the same in the same words leaves it out; what that does is told by the limit."""
     mentioned: ClassVar[Mentioned | None] = None
     """Of the column that says how far inside a row lies, if only a part of the limit is known."""
 
@@ -284,57 +239,39 @@ class Limit:
 
 @dataclass(frozen=True)
 class Column:
-    """One quantity over one index set.
-
-    Parameters
-    ----------
-    name : str
-        The cell name, ``x_m1``.
-    axis : Axis or None
-        None for a scalar.
-    rule : Given, Formula, Root or Iterated
-        Where its values come from.
-    unit : str
-        SI unit; an exponent may be another column's name (``N/m^alpha``).
-    meaning : str
-        What it is.
-    latex : str
-        How it is printed; ``%s`` is where an index goes.
-    display : str
-        The unit it is shown in; ``like x_p`` follows that of another column, as the user wrote it if that is
-        given.
-    positive : bool
-        Whether it is positive wherever it has a value: a formula that gives zero or less is then outside
-        its domain. (A root is held by its interval, a given value by what the workbook allows.)
-    requires : tuple
-        Relations that must hold for a row, each with the sentence that explains a ``#DOMAIN!``.
-    limits : tuple of Limit
-        Where its cells are expected. One outside keeps its value and carries a mark.
-    exact : bool
-        Whether a given value is a choice or a convention, so that its digits say nothing of precision.
-    is_u : bool
-        Whether its cells are uncertainties themselves, of which no more digits are shown than of any other.
-    spare : bool
-        Whether its conditions ask for more than a campaign must have, so that where they do not hold there is
-        nothing to find: its cells have no value, and nobody is to blame.
-    alongside : tuple of Column
-        Columns on the axes that its rule sums over: the sums leave out rows without a value in these, too.
-    """
+    """One quantity over one index set."""
 
     name: str
+    """The cell name, ``x_m1``."""
     axis: Axis | None
+    """None for a scalar."""
     rule: Rule
+    """Where its values come from."""
     unit: str = "1"
+    """SI unit; an exponent may be another column's name (``N/m^alpha``)."""
     meaning: str = ""
+    """What it is."""
     latex: str = ""
+    """How it is printed; ``%s`` is where an index goes."""
     display: str = ""
+    """The unit it is shown in; ``like x_p`` follows that of another column, as the user wrote it if that is
+    given."""
     positive: bool = True
+    """Whether it is positive wherever it has a value: a formula that gives zero or less is then outside its
+    domain. (A root is held by its interval, a given value by what the workbook allows.)"""
     requires: tuple[tuple[Rel, str], ...] = ()
+    """Relations that must hold for a row, each with the sentence that explains a ``#DOMAIN!``."""
     exact: bool = False
+    """Whether a given value is a choice or a convention, so that its digits say nothing of precision."""
     limits: tuple[Limit, ...] = ()
+    """Where its cells are expected. One outside keeps its value and carries a mark."""
     is_u: bool = False
+    """Whether its cells are uncertainties themselves, of which no more digits are shown than of any other."""
     spare: bool = False
+    """Whether its conditions ask for more than a campaign must have, so that where they do not hold there is
+    nothing to find: its cells have no value, and nobody is to blame."""
     alongside: tuple[Column, ...] = ()
+    """Columns on the axes that its rule sums over: the sums leave out rows without a value in these, too."""
     mentioned: ClassVar[Mentioned | None] = None
     """Of a column of which only a part is known."""
 
@@ -413,19 +350,13 @@ class Column:
 
 @dataclass(frozen=True)
 class Reference:
-    """A cell, size or running number in an expression.
-
-    Parameters
-    ----------
-    cell : Expr
-        ``x_p[i]``, ``beta``, ``n_pairs``.
-    over : Axis or None
-        The axis of the innermost reduction it stands in, whose rows it then runs over; None for one of
-        the row itself. ``alpha[p]`` may stand for both in one formula.
-    """
+    """A cell, size or running number in an expression."""
 
     cell: Expr
+    """``x_p[i]``, ``beta``, ``n_pairs``."""
     over: Axis | None = None
+    """The axis of the innermost reduction it stands in, whose rows it then runs over; None for one of the row
+    itself. ``alpha[p]`` may stand for both in one formula."""
 
     @cached_property
     def name(self) -> str:
@@ -451,11 +382,7 @@ class Reference:
 def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
     """The column whose unit another is shown in: itself, or what it is declared to be shown like, to the end.
 
-    Parameters
-    ----------
-    column : Column
-    columns : mapping of str to Column
-        One that it is shown like and that is not among them is the end.
+    `columns`: one that it is shown like and that is not among them is the end.
     """
     way = {column.name}
     while column.display.startswith("like "):
@@ -468,14 +395,7 @@ def shown_as(column: Column, columns: Mapping[str, Column]) -> Column:
 
 
 def shown_in(column: Column, columns: Mapping[str, Column]) -> ParsedUnit:
-    """The unit that a column is declared to be shown in; that of another column, if it is shown like it.
-
-    Parameters
-    ----------
-    column : Column
-    columns : mapping of str to Column
-        By name.
-    """
+    """The unit that a column is declared to be shown in; that of another column, if it is shown like it."""
     try:
         return parse_open(written_in(column, columns))
     except UnitError:

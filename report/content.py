@@ -22,10 +22,6 @@ class Untold(Exception):
 def content(part: Any) -> str:
     """Everything that a part is made of, assumptions included.
 
-    Parameters
-    ----------
-    part : Basic, dataclass, tuple, or what Python prints whole
-
     Raises
     ------
     Untold

@@ -24,7 +24,6 @@ def told(sheet: Sheet, layouts: Mapping[str, Layout], formats: Collection[str]) 
 
     Parameters
     ----------
-    sheet : Sheet
     layouts : mapping of axis name to Layout
     formats : collection of str
         What is to be written.

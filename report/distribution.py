@@ -80,33 +80,22 @@ PARTS: Mapping[Shape, Callable[[float], float]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Error:
-    """One error of a number, or of several.
-
-    Parameters
-    ----------
-    width : Fraction
-        In SI, at least 0: half of the range, or the standard uncertainty itself where there are no ends.
-    shape : Shape
-    dof : float
-        Degrees of freedom of the standard uncertainty; infinite where it is known.
-    said : str
-        How it was stated; empty if it follows from printed digits.
-    sample : str
-        What its standard uncertainty was estimated from, by a name that others of the same estimate have:
-        their degrees of freedom are the same ones. Empty for an estimate of its own.
-    law : Law or None
-        How it is distributed, where the shape does not tell it whole.
-    where : str
-        ``file:line:column`` of what states it of one number alone; empty elsewhere.
-    """
+    """One error of a number, or of several."""
 
     width: Fraction
+    """In SI, at least 0: half of the range, or the standard uncertainty itself where there are no ends."""
     shape: Shape = Shape.NORMAL
     dof: float = math.inf
+    """Degrees of freedom of the standard uncertainty; infinite where it is known."""
     said: str = ""
+    """How it was stated; empty if it follows from printed digits."""
     sample: str = ""
+    """What its standard uncertainty was estimated from, by a name that others of the same estimate have:
+    their degrees of freedom are the same ones. Empty for an estimate of its own."""
     law: Law | None = None
+    """How it is distributed, where the shape does not tell it whole."""
     where: str = field(default="", compare=False)
+    """``file:line:column`` of what states it of one number alone; empty elsewhere."""
 
     @property
     def table(self) -> str:

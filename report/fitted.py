@@ -51,8 +51,8 @@ class DeclaredFit:
     observed, model : Expr
     sought : mapping of Symbol to declaration
         The parameters: `meaning`, `start` and `column` of each, its unit if that is stated.
-    u : Expr, "stated" or None
-        What rows are weighed by.
+    u : mapping of Indexed to (Expr, "stated" or None)
+        How large the errors of the observed are, by which rows are weighed, and those of what else has some.
     number : str
         Of its equations.
     own : iterator of str
@@ -83,7 +83,7 @@ class DeclaredFit:
         observed: Indexed,
         model: Expr,
         sought: Mapping[Symbol, Any],
-        u: Any,
+        u: Mapping[Any, Any],
         number: str,
         own: Iterator[str],
         of: GroupAxis | None = None,
@@ -91,56 +91,60 @@ class DeclaredFit:
         self._of, self.given = of, dict[str, int]()
         self._axis, self._known, self._model, self._observed = axis, known, model, known[name_of(observed)]
         _refuse_names(name, sought)
-        stated = [_stated(self._observed)] if self._is_stated(name, u) else []
-        u = stated[0].cell if stated else u
+        _refuse_errors(name, observed, model, u, of)
+        every = {each: known[name_of(each)] for each in u}
+        stated = {each: _stated(own) for each, own in every.items() if _is_stated(name, own, u[each])}
+        others = {each: stated[each].cell if each in stated else size for each, size in u.items()}
+        own_size = others.pop(observed)
         words = {each: said.meaning or str(each) for each, said in sought.items()}
         rows = f"of the {axis.size_name} {axis.name} of each {of.row}" if of else ""
         self._fit = fit = LeastSquares(
-            name, observed, model, self._observed.meaning, words, u, axis.index, axis.size, number, own, rows
-        )
+            name, observed, model, self._observed.meaning, words, own_size, others,
+            axis.index, axis.size, number, own, rows,
+        )  # fmt: skip
         if not fit.linear:
-            _refuse_curved(name, sought, of)
+            _refuse_curved(name, {} if fit.flat else sought, of)
         self.entries, self.aside = tuple(fit.entries), tuple(part.name for part in fit.helpers)
-        self.aside += tuple(column.name for column in stated)
+        self.aside += tuple(column.name for column in stated.values())
         self.curve = Curve(
             fit.names["S"], axis.name, self._observed.name, fit.names["residual"], fit.names["s"],
-            tuple(map(str, sought)), u is not None, tuple(each.claim.label for each in fit.claims),
+            tuple(map(str, sought)), own_size is not None, tuple(each.claim.label for each in fit.claims),
         )  # fmt: skip
-        made = {column.name: column for column in stated}
+        made = {column.name: column for column in stated.values()}
         for each, said in sought.items():
             unit = {"unit": "" if fit.linear else "1", **said.column}
             made[str(each)] = Column(str(each), of, Given(), meaning=words[each], **unit)
-        self._weighed, self._shown = u is not None, {f"s_{each}": f"like {each}" for each in sought}
+        self._weighed, self._shown = own_size is not None, {f"s_{each}": f"like {each}" for each in sought}
         self._latex = self._printed([made[str(each)] for each in sought])
+        for each, foot in fit.feet.items():
+            made[str(foot.base)] = self._adjusted(every[each], str(foot.base))
         parts = (*fit.results, *fit.helpers)
-        for part in _in_turn(parts, () if fit.linear else map(str, sought)):
-            start = None if part.step is None else sought[part.cell].start
-            made[part.name] = self._computed(part, made, start)
+        for part in _in_turn(parts, [part.name for part in parts if part.step is not None]):
+            start = sought[part.cell].start if part.cell in sought else part.start
+            made[part.name] = self._computed(part, made, Integer(0) if start is None else start)
         # Another fit of the same column may have declared them.
-        new = [column for column in stated if known.get(column.name) != column]
+        new = [column for column in stated.values() if known.get(column.name) != column]
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
         self.letters = tuple(part.name for part in parts if part.latex)
 
-    def _is_stated(self, name: str, u: Any) -> bool:
-        """Whether rows are weighed by what is stated of the observed, of which something can be stated."""
-        if not isinstance(u, str):
-            return False
-        if u != STATED:
-            raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
-        if not isinstance(self._observed.rule, Given):
-            raise SheetError(
-                f"{name}: nothing is stated of {self._observed.name}, which is computed: give a formula "
-                "of its standard uncertainties instead of 'stated', or leave u out",
-                name,
-            )
-        return True
+    def _adjusted(self, own: Column, name: str) -> Column:
+        """The true values of what was observed, as the fit has them."""
+        latex = own.latex or spelt(own.name)
+        head = re.split("[_%]", latex, maxsplit=1)[0]
+        hat = latex.replace(head, rf"\tilde{{{head}}}", 1)
+        meaning = f"{own.meaning}, adjusted"
+        return Column(
+            name, self._axis, Given(), own.unit, meaning, hat, f"like {own.name}", positive=own.positive
+        )
 
     def _computed(self, part: FitQuantity, made: Mapping[str, Column], start: Expr | None) -> Column:
         """The column of a part, by its formula or by the steps from a start."""
         column, equation, needs = made.get(part.name) or self._blank(part), part.equation, part.needs
         if part.step is not None:
-            first = equation.at({equation.sides[0]: Integer(0)})
+            first = (
+                equation if isinstance(part.cell, Indexed) else equation.at({equation.sides[0]: Integer(0)})
+            )
             return replace(column, rule=Iterated(first, part.step, start, NONE))
         if self._of:
             put = self._put(*equation.members, *(condition for condition, _ in needs))
@@ -264,6 +268,21 @@ def _refuse_names(name: str, sought: Mapping[Symbol, Any]) -> None:
         raise SheetError(f"{each} is a word of the fit {name} itself: call the parameter otherwise", each)
 
 
+def _refuse_errors(
+    name: str, observed: Indexed, model: Expr, u: Mapping[Any, Any], of: GroupAxis | None
+) -> None:
+    """Refuse errors of what the model does not name, and of other variables without those of the observed."""
+    others = [each for each in u if each != observed]
+    for each in others:
+        if not isinstance(each, Indexed) or not model.has(each):
+            raise SheetError(f"{name}: u is of columns that the model names; {each} is none", name)
+    if others and of is not None:
+        raise SheetError(f"{name}: a fit of={of.row} has errors in {observed} alone", name)
+    if observed not in u or (others and None in u.values()):
+        names = " and ".join(name_of(each) for each in (observed, *others))
+        raise SheetError(f"{name}: u says how uncertain {names} are, each of them", name)
+
+
 def _refuse_curved(name: str, sought: Mapping[Symbol, Any], of: GroupAxis | None) -> None:
     """Refuse a model that is not linear where nothing says from where its parameters are sought."""
     if of:
@@ -321,6 +340,21 @@ def _squared(of: Column) -> str:
     if of.written == of.unit or unit.zero or not unit.dimension:
         return ""
     return f"{of.written}^2" if of.written.isalpha() else f"({of.written})^2"
+
+
+def _is_stated(name: str, of: Column, u: Any) -> bool:
+    """Whether it is weighed by what is stated of it, of which something can be stated."""
+    if not isinstance(u, str):
+        return False
+    if u != STATED:
+        raise SheetError(f"{name}: u is a formula, or 'stated', not {u!r}", name)
+    if not isinstance(of.rule, Given):
+        raise SheetError(
+            f"{name}: nothing is stated of {of.name}, which is computed: give a formula "
+            "of its standard uncertainties instead of 'stated', or leave u out",
+            name,
+        )
+    return True
 
 
 def _stated(of: Column) -> Column:

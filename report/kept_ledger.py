@@ -77,11 +77,7 @@ def _words(equation: Equation) -> dict[str, str]:
 def known_equation(told: ToldEquation, whole: Callable[[], Equation]) -> Equation:
     """The equation of what was told.
 
-    Parameters
-    ----------
-    told : ToldEquation
-    whole : callable
-        Returns the equation that it was told of.
+    `whole`: returns the equation that it was told of.
     """
     parent = None if told.origin is None else known_equation(told.origin, lambda: whole().origin)
     known = {**told.words, "kind": Kind(told.kind), "parent": parent, "written": told.written}

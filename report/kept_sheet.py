@@ -128,7 +128,6 @@ def sheet_of(workbook: Workbook, given: frozenset[str], check: Callable[[Sheet],
 
     Parameters
     ----------
-    workbook : Workbook
     given : frozenset of str
         As for :attr:`Workbook.sheet`.
     check : callable
@@ -235,13 +234,7 @@ def _column(
 class _Known:
     """Columns of what was told.
 
-    Parameters
-    ----------
-    told : _ToldSheet
-    declared : callable
-        Returns the columns that it was told of, by name.
-    axes : iterable of Axis
-        Those that are there already.
+    `declared`: returns the columns that it was told of, by name. `axes`: those that are there already.
     """
 
     def __init__(

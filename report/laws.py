@@ -137,17 +137,12 @@ class Exponential(Law):
 
 @dataclass(frozen=True)
 class TruncatedNormal(Law):
-    """A normal distribution around the given number that is cut off.
-
-    Parameters
-    ----------
-    low, high : float
-        The ends, in standard deviations of the normal distribution from the number, which lies between them.
-        Either may be infinite.
-    """
+    """A normal distribution around the given number that is cut off."""
 
     low: float
     high: float
+    """`low` and `high`: the ends, in standard deviations of the normal distribution from the number, which
+    lies between them. Either may be infinite."""
 
     @cached_property
     def _moments(self) -> tuple[float, float, float, float]:
@@ -211,18 +206,13 @@ class TruncatedNormal(Law):
 
 @dataclass(frozen=True)
 class Samples(Law):
-    """Draws that somebody else made: each is as likely as any other.
-
-    Parameters
-    ----------
-    errors : float array (draws,)
-        Each minus the given number, over the standard deviation of all; row by row as in the table.
-    table : str
-        Its name: what stands in one row of it belongs together.
-    """
+    """Draws that somebody else made: each is as likely as any other."""
 
     errors: Array = field(compare=False, repr=False)
+    """Of shape (draws,); each minus the given number, over the standard deviation of all; row by row as in
+    the table."""
     table: str = ""
+    """Its name: what stands in one row of it belongs together."""
 
     @classmethod
     def around(cls, value: float, draws: Sequence[float], table: str) -> tuple[float, Samples]:

@@ -288,9 +288,10 @@ def fit(
     model : Expr
         In names of the body and in those that are announced by :func:`unknown`. If it is linear in these,
         nothing is iterated; else each needs a start.
-    u : Expr or ``"stated"``, optional
+    u : Expr, ``"stated"`` or a mapping, optional
         The standard uncertainties that rows are weighed by: a formula, or those that are stated of the
-        column. Without, all rows are alike.
+        column. Without, all rows are alike. With ``u={y: 0.2, x: "stated"}`` x has errors, too, and
+        ``line.at_x`` is what it is on the model. Parameters then have the units that are announced.
     label : str
         The number of its equations, ``(H.13)``, which get letters.
     figures : bool
@@ -299,7 +300,8 @@ def fit(
         What :func:`groups` returned: the rows of each group have a fit of their own, so that each parameter,
         its standard uncertainty, ``line.S`` and ``line.s`` have a value for each group. The model is linear.
     """
-    weights = u if u is None or isinstance(u, str) else exact(u)
+    sizes = (u if isinstance(u, Mapping) else {observed: u}).items()
+    weights = {each: size if size is None or isinstance(size, str) else exact(size) for each, size in sizes}
     return _said(FitLine(observed, exact(model), weights, label, figures, of))
 
 
@@ -587,9 +589,8 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
         (end,) = (each for each in (low, high) if each is not None)
         far = max(abs(end), 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
-    latex = column.latex or spelt(column.name)
-    own = column.name, column.meaning, column.unit, latex, (low, high), bool(column.positive)
-    return Quantity(*own, "", *known)
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
+    return Quantity(*own, bool(column.positive), "", *known)
 
 
 def _workbook(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:

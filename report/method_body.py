@@ -466,7 +466,7 @@ class MethodBody(dict[str, Any]):
         if said.of is not None and (said.of not in self.groups or rows != self.axis):
             word = getattr(said.of, "row", said.of)
             raise SheetError(f"{name}: of={word} is none of what groups() returned, or has no {rows.name}")
-        for formula in (said.model, said.u):
+        for formula in (said.model, *said.u.values()):
             if isinstance(formula, Expr) and rows in self.groups:
                 self._refuse_rows(name, formula, rows)
             if isinstance(formula, Expr) and self._is_grouped(formula, said.observed):

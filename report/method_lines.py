@@ -98,7 +98,7 @@ class FitLine:
 
     observed: Any
     model: Expr
-    u: Any
+    u: Mapping[Any, Any]
     label: str
     figures: bool
     of: Any = None

@@ -20,12 +20,7 @@ __all__ = ["Named", "member", "name_of", "references", "summed_over", "within"]
 class Named:
     """What symbols mean in a sheet.
 
-    Parameters
-    ----------
-    by_name : mapping of str to Column
-        Its columns.
-    axes : sequence of Axis
-        Its index sets.
+    `by_name`: its columns. `axes`: its index sets.
     """
 
     def __init__(self, by_name: Mapping[str, Column], axes: Sequence[Axis]) -> None:
@@ -112,11 +107,7 @@ class Named:
     def check_in_loop(self, column: Column, names: Set[str]) -> None:
         """A loop begins somewhere, and each of its columns is a formula or iterated.
 
-        Parameters
-        ----------
-        column : Column
-        names : set of str
-            Of the columns of its loop.
+        `names`: of the columns of its loop.
         """
         rule = column.rule
         if isinstance(rule, Root):
@@ -207,7 +198,6 @@ def within(value: Expr, bounds: Bounds) -> Boolean:
     ----------
     value : Expr
         A real symbol that assumes nothing, or all of it would be true already.
-    bounds : Bounds
 
     Examples
     --------
@@ -226,13 +216,7 @@ def within(value: Expr, bounds: Bounds) -> Boolean:
 def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None = None) -> Iterator[Reference]:
     """Everything that an expression names, in the order it stands there; the same may come twice.
 
-    Parameters
-    ----------
-    expression : Basic
-    sums : mapping of Expr to Axis
-        From :func:`summed_over`.
-    over : Axis or None
-        The axis of the sum that the expression stands in.
+    `sums`: from :func:`summed_over`. `over`: the axis of the sum that the expression stands in.
     """
     if isinstance(expression, REDUCTIONS):
         yield from references(taken_of(expression), sums, _over(expression, sums))

@@ -18,12 +18,7 @@ def outdated(folder: Path, files: Iterable[str]) -> Iterator[Check]:
 
     Of an output without a manifest, or without a report folder above it, nobody can tell.
 
-    Parameters
-    ----------
-    folder : Path
-        A report folder.
-    files : iterable of str
-        The names of what it is read from.
+    `folder`: a report folder. `files`: the names of what it is read from.
     """
     yield from outdated_sources(folder, files)
     if folder != PAPER:

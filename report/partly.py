@@ -21,7 +21,6 @@ def partly(kind: type[T], known: Mapping[str, Any], whole: Callable[[], T]) -> T
 
     Parameters
     ----------
-    kind : type
     known : mapping of str to anything
         Fields, and what it caches of them.
     whole : callable

@@ -18,13 +18,7 @@ Algebra = tuple[tuple[Proof, ...], tuple[Erratum, ...]]
 def proved(ledger: Ledger, errata: bool, step: Callable[[str], None] = lambda _: None) -> Algebra:
     """Prove all equations of a ledger.
 
-    Parameters
-    ----------
-    ledger : Ledger
-    errata : bool
-        Whether to check the print, too.
-    step : callable
-        Told what is begun.
+    `errata`: whether to check the print, too. `step`: told what is begun.
     """
     from ..derivations.proof import prove
 

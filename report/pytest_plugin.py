@@ -96,11 +96,7 @@ def _is_our_marker(name: str, /, **_: object) -> bool:
 class FolderChecks:
     """A report folder, computed once and only as far as its tests ask.
 
-    Parameters
-    ----------
-    folder : Path
-    own_code : bool
-        Whether its workbook may be code of the folder.
+    `own_code`: whether its workbook may be code of the folder.
     """
 
     def __init__(self, folder: Path, own_code: bool) -> None:
@@ -216,8 +212,6 @@ class KindCollector(pytest.Collector):
 
     Parameters
     ----------
-    checks : FolderChecks
-    names : list of str
     **more
         As for :class:`pytest.Collector`.
     """
@@ -237,7 +231,6 @@ class CheckItem(pytest.Item):
 
     Parameters
     ----------
-    checks : FolderChecks
     **more
         As for :class:`pytest.Item`.
     """

@@ -47,23 +47,16 @@ def span(low: str, high: str) -> str:
 
 @dataclass(frozen=True)
 class Bounds:
-    """The values that are allowed for an input, in SI, as data.
-
-    Parameters
-    ----------
-    low, high : float or None
-        The ends of the interval; None is no end.
-    low_open, high_open : bool
-        Whether the end itself is excluded.
-    integer : bool
-        Whether only whole numbers are allowed.
-    """
+    """The values that are allowed for an input, in SI, as data."""
 
     low: float | None = None
     high: float | None = None
+    """`low` and `high`: the ends of the interval; None is no end."""
     low_open: bool = False
     high_open: bool = False
+    """`low_open` and `high_open`: whether the end itself is excluded."""
     integer: bool = False
+    """Whether only whole numbers are allowed."""
 
     def allow(self, value: Fraction | float) -> bool:
         """Tell whether a value lies inside; what is not finite never does."""
@@ -130,37 +123,25 @@ POISSON = Bounds(low=0, high=0.5)
 
 @dataclass(frozen=True)
 class Printed:
-    """A number as it was printed: its digits are data.
-
-    Parameters
-    ----------
-    text : str
-        The digits as printed, ``"2.940"``.
-    unit : str
-        The unit as printed, ``"um"``; ``"1"`` for a pure number.
-    value : Fraction
-        The exact value in SI.
-    scale : Fraction
-        One printed unit in SI (1/1000000 for ``um``).
-    mode : str
-        How it was shortened: ``"rounded"`` or ``"truncated"``.
-    stated : tuple of Error or None
-        The errors that the user stated, each independent of all others; none of them if it is exact. Without
-        a statement the digits say it.
-    where : str
-        ``file:line:column``, for messages and for tracing.
-    zero : Fraction
-        Zero of that unit in SI (273.15 for ``degC``).
-    """
+    """A number as it was printed: its digits are data."""
 
     text: str
+    """The digits as printed, ``"2.940"``."""
     unit: str
+    """The unit as printed, ``"um"``; ``"1"`` for a pure number."""
     value: Fraction
+    """The exact value in SI."""
     scale: Fraction
+    """One printed unit in SI (1/1000000 for ``um``)."""
     mode: str = "rounded"
+    """How it was shortened: ``"rounded"`` or ``"truncated"``."""
     stated: tuple[Error, ...] | None = None
+    """The errors that the user stated, each independent of all others; none of them if it is exact. Without a
+    statement the digits say it."""
     where: str = ""
+    """``file:line:column``, for messages and for tracing."""
     zero: Fraction = Fraction(0)
+    """Zero of that unit in SI (273.15 for ``degC``)."""
 
     def of(self, value: Any) -> Any:
         """A value in SI, a fraction or a double, as a number of its unit."""

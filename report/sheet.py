@@ -56,18 +56,12 @@ class CycleError(SheetError):
 
 @dataclass(frozen=True)
 class Loop:
-    """Columns that rest on one another, in the order of a pass.
-
-    Parameters
-    ----------
-    formulas : tuple of Column
-        Computed from the last values of those that are iterated.
-    iterated : tuple of Column
-        Given their next values, all at once.
-    """
+    """Columns that rest on one another, in the order of a pass."""
 
     formulas: tuple[Column, ...]
+    """Computed from the last values of those that are iterated."""
     iterated: tuple[Column, ...]
+    """Given their next values, all at once."""
 
     @classmethod
     def of(cls, columns: Iterable[Column]) -> Loop:
@@ -97,11 +91,6 @@ class Loop:
 class Sheet:
     """Columns in an order in which each finds its precedents computed.
 
-    Parameters
-    ----------
-    columns : tuple of Column
-        In the order they are declared, which is the order they are shown.
-
     Raises
     ------
     SheetError
@@ -111,6 +100,7 @@ class Sheet:
     """
 
     columns: tuple[Column, ...]
+    """In the order they are declared, which is the order they are shown."""
     by_name: Mapping[str, Column] = field(init=False, repr=False)
     order: tuple[Column, ...] = field(init=False, repr=False)
     """Order of evaluation; ties break by declaration. A loop's columns stand together, the iterated last."""

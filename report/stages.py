@@ -219,13 +219,8 @@ def _claims(report: Report) -> Iterator[Check]:
 def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
     """The report with its engines compared with 50 digits.
 
-    Parameters
-    ----------
-    report : Report
-    every : bool
-        Whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
-    step : callable
-        Told what is begun.
+    `every`: whether to run what else is installed too: JavaScript, and the workbook in LibreOffice. `step`:
+    Told what is begun.
     """
     from .cells.layout import how_large
     from .engines.numpy import evaluate
@@ -267,13 +262,7 @@ def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement,
 def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Report:
     """The report with every published value judged: whether the printed inputs can yield it.
 
-    Parameters
-    ----------
-    report : Report
-    step : callable
-        Told what is begun.
-    keep : callable
-        Gives what is made of the folder of the report, made now or before.
+    `step`: told what is begun. `keep`: gives what is made of the folder of the report, made now or before.
     """
     from .referee.uncertain import compare_uncertainties
 

@@ -55,7 +55,6 @@ class Study:
 
     Parameters
     ----------
-    folder : Path
     find : callable
         :func:`~loopsheet.report.which_workbook.find_workbook`, or, if nobody asked to run the folder's own
         code, :func:`~loopsheet.report.which_workbook.shipped_workbook`.

@@ -38,21 +38,14 @@ _HALF = "a build was killed while it put its files in place: some are of it, som
 
 @dataclass(frozen=True)
 class Verification:
-    """What was found when a report was built again.
-
-    Parameters
-    ----------
-    checks : tuple of Check
-        Of the kinds ``input``, ``source``, ``library``, ``output`` and ``number``.
-    differences : Differences or None
-        Number by number; None if the report that was there has no readable values.json.
-    verdict : str
-        The conclusion, in a sentence.
-    """
+    """What was found when a report was built again."""
 
     checks: tuple[Check, ...]
+    """Of the kinds ``input``, ``source``, ``library``, ``output`` and ``number``."""
     differences: Differences | None
+    """Number by number; None if the report that was there has no readable values.json."""
     verdict: str
+    """The conclusion, in a sentence."""
 
 
 def verify(

@@ -21,8 +21,6 @@ def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workboo
 
     Parameters
     ----------
-    name : str
-    folder : Path
     code : bytes, optional
         What that file held when it was read. It is run: whoever names a folder to be computed asks for it.
 

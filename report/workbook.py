@@ -34,46 +34,31 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Measured:
-    """A measured column of the tests' table, by its cell name.
-
-    Parameters
-    ----------
-    name : str
-        The cell name, and the word in the header: ``x_p`` of ``x_p [um]``.
-    unit : str
-        The SI unit; a header may use any compatible one.
-    meaning : str
-        What it is, for messages and captions.
-    bounds : Bounds
-        What values are allowed, in SI.
-    scatter : str
-        Of what a model is fitted to, the cell that tells how it scatters about the curve.
-    """
+    """A measured column of the tests' table, by its cell name."""
 
     name: str
+    """The cell name, and the word in the header: ``x_p`` of ``x_p [um]``."""
     unit: str
+    """The SI unit; a header may use any compatible one."""
     meaning: str
+    """What it is, for messages and captions."""
     bounds: Bounds = field(default_factory=Bounds)
+    """What values are allowed, in SI."""
     scatter: str = ""
+    """Of what a model is fitted to, the cell that tells how it scatters about the curve."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A scalar of the ``[parameters]`` section, by its cell name.
-
-    Parameters
-    ----------
-    name, unit, meaning, bounds
-        As for :class:`Measured`.
-    default : str or None
-        The printed value with its unit that holds when it is left out; None: no default.
-    """
+    """A scalar of the ``[parameters]`` section, by its cell name."""
 
     name: str
     unit: str
     meaning: str
     bounds: Bounds = field(default_factory=Bounds)
+    """`name`, `unit`, `meaning` and `bounds`: as for :class:`Measured`."""
     default: str | None = None
+    """The printed value with its unit that holds when it is left out; None: no default."""
 
 
 @dataclass(frozen=True)
@@ -96,11 +81,7 @@ class TableSpec:
 def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
     """A table of what is given, one for the rows of each axis, and one of the results.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    aside : set of str
-        The columns that none shows. Generated points are too many to be shown.
+    `aside`: the columns that none shows. Generated points are too many to be shown.
     """
     shown = [column for column in sheet.columns if column.name not in aside]
     given = tuple(c.name for c in shown if c.axis is None and c.equation is None)
@@ -148,155 +129,96 @@ class FigureSpec:
 
 @dataclass(frozen=True)
 class SquareSum:
-    """A least sum of squares: it tells whether what was fitted describes what was measured.
-
-    Parameters
-    ----------
-    name : str
-        The cell of the sum; every square is that of a deviation over its standard uncertainty.
-    axis : str
-        The rows that it sums over.
-    fitted : int
-        How many numbers were fitted to them.
-    each : int
-        How many squares a row has.
-    asked : bool
-        Whether data are odd if chance does not make it so: not where models are compared of which one holds
-        at most.
-    """
+    """A least sum of squares: it tells whether what was fitted describes what was measured."""
 
     name: str
+    """The cell of the sum; every square is that of a deviation over its standard uncertainty."""
     axis: str
+    """The rows that it sums over."""
     fitted: int
+    """How many numbers were fitted to them."""
     each: int = 1
+    """How many squares a row has."""
     asked: bool = True
+    """Whether data are odd if chance does not make it so: not where models are compared of which one holds at
+    most."""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve that was fitted to rows: its residuals tell whether it describes them.
-
-    Parameters
-    ----------
-    name : str
-        The cell of its sum of squares.
-    axis : str
-        The rows that it sums over.
-    observed, residual : str
-        The columns of what was observed, and of what the curve leaves of that.
-    scatter : str
-        The cell of the scatter about the curve.
-    fitted : tuple of str
-        The cells that were fitted to them.
-    weighed : bool
-        Whether rows were weighed.
-    slopes : tuple of str
-        The labels of the claims that the sum of squares has no slope by each; none of a linear model, whose
-        parameters have proved equations of their own.
-    """
+    """A curve that was fitted to rows: its residuals tell whether it describes them."""
 
     name: str
+    """The cell of its sum of squares."""
     axis: str
+    """The rows that it sums over."""
     observed: str
     residual: str
+    """`observed` and `residual`: the columns of what was observed, and of what the curve leaves of that."""
     scatter: str
+    """The cell of the scatter about the curve."""
     fitted: tuple[str, ...]
+    """The cells that were fitted to them."""
     weighed: bool
+    """Whether rows were weighed."""
     slopes: tuple[str, ...] = ()
+    """The labels of the claims that the sum of squares has no slope by each; none of a linear model, whose
+    parameters have proved equations of their own."""
 
 
 @dataclass(frozen=True)
 class Claimed:
-    """Two formulas in cells of the sheet that are to be equal whatever is measured.
-
-    Parameters
-    ----------
-    label, meaning : str
-        Of its equation.
-    axis : Axis or None
-        Of its rows, if it is one of each row.
-    left, right : Expr
-    """
+    """Two formulas in cells of the sheet that are to be equal whatever is measured."""
 
     label: str
     meaning: str
+    """`label` and `meaning`: of its equation."""
     axis: Axis | None
+    """Of its rows, if it is one of each row."""
     left: Expr
     right: Expr
 
 
 @dataclass(frozen=True)
 class Design:
-    """How rows that are not measured yet are made forward from what is known.
-
-    Parameters
-    ----------
-    chosen : str
-        The measured column that a planner chooses.
-    fitted : tuple of Column
-        What is made of the measured rows first: a sheet whose given columns are measured ones.
-    planned : tuple of Column
-        Another sheet over rows of the same axis: the chosen column and numbers of the workbook's sheet or of
-        `fitted`, given, and formulas for every other measured column.
-    curve : tuple of str
-        The numbers of the workbook's sheet that these rows follow, for the reader.
-    """
+    """How rows that are not measured yet are made forward from what is known."""
 
     chosen: str
+    """The measured column that a planner chooses."""
     fitted: tuple[Column, ...]
+    """What is made of the measured rows first: a sheet whose given columns are measured ones."""
     planned: tuple[Column, ...]
+    """Another sheet over rows of the same axis: the chosen column and numbers of the workbook's sheet or of
+    `fitted`, given, and formulas for every other measured column."""
     curve: tuple[str, ...]
+    """The numbers of the workbook's sheet that these rows follow, for the reader."""
 
 
 @dataclass(frozen=True)
 class Workbook:
-    """One published method, ready to be fed with measurements.
-
-    Parameters
-    ----------
-    name : str
-        The word for ``workbook =`` in report.toml.
-    title : str
-        A short title of the method.
-    source : str
-        The publication, as a reference.
-    ledger : callable
-        Returns the equations with their derivations, in the order of the source.
-    measured, parameters : tuples
-        What the user gives.
-    check_parameters : callable
-        Takes the names that were given; returns None or a sentence that says which combination is
-        missing or contradictory.
-    sheet : callable
-        Takes the names of the given parameters; returns the :class:`Sheet`. What is given gets the bounds
-        there that `measured` and `parameters` declare.
-    row : str
-        What a row of the table of measurements is called: its first line may say that in place of ``test``.
-    fits : tuple of str
-        Names of three cells, if a source's choice of fit is to be told: the mean, the fit to logarithms (as
-        published), the fit to the values themselves.
-    headline : tuple of str
-        The cells that are the result, first in every view.
-    tables, figures
-        What a reader is shown.
-    drawn : callable or None
-        Takes the sheet; returns the columns that only the charts of its figures ask for.
-    prose : str
-        Name of the narrative under templates/prose.
-    told : mapping of str to str
-        Lines of that narrative that the workbook makes itself, by the name under which it asks for them.
-    """
+    """One published method, ready to be fed with measurements."""
 
     name: str
+    """The word for ``workbook =`` in report.toml."""
     title: str
+    """A short title of the method."""
     source: str
+    """The publication, as a reference."""
     ledger: Callable[[], Ledger]
+    """Returns the equations with their derivations, in the order of the source."""
     measured: tuple[Measured, ...]
     parameters: tuple[Parameter, ...]
+    """`measured` and `parameters`: what the user gives."""
     sheet: Callable[[frozenset[str]], Sheet]
+    """Takes the names of the given parameters; returns the :class:`Sheet`. What is given gets the bounds
+    there that `measured` and `parameters` declare."""
     check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
+    """Takes the names that were given; returns None or a sentence that says which combination is missing or
+    contradictory."""
     headline: tuple[str, ...] = ()
+    """The cells that are the result, first in every view."""
     row: str = "test"
+    """What a row of the table of measurements is called: its first line may say that in place of ``test``."""
     groups: tuple[str, ...] = ()
     """The columns of words that say which rows belong together."""
     squares: tuple[SquareSum, ...] = ()
@@ -310,10 +232,15 @@ class Workbook:
     aside: frozenset[str] = frozenset()
     """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()
+    """Names of three cells, if a source's choice of fit is to be told: the mean, the fit to logarithms (as
+    published), the fit to the values themselves."""
     tables: tuple[TableSpec, ...] = ()
     figures: tuple[FigureSpec, ...] = ()
+    """`tables` and `figures`: what a reader is shown."""
     prose: str = "generic"
+    """Name of the narrative under templates/prose."""
     told: Mapping[str, str] = field(default_factory=dict)
+    """Lines of that narrative that the workbook makes itself, by the name under which it asks for them."""
     published_as: Mapping[str, str] = field(default_factory=dict)
     """Titles of the published tables, by their ``source`` in published.csv."""
     example: tuple[tuple[str, ...], ...] = ()
@@ -321,6 +248,7 @@ class Workbook:
     example_parameters: Mapping[str, str] = field(default_factory=dict)
     """The parameters that go with it, as printed, by name."""
     drawn: Callable[[Sheet], Drawn] | None = None
+    """Takes the sheet; returns the columns that only the charts of its figures ask for."""
     drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
     """Returns what draws its figures, by name: each takes the report and returns a matplotlib figure."""
     models: tuple[Any, ...] = ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import pickle
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from made_files import hashes
 
 from loopsheet.report import build, cost
 from loopsheet.report.cli import main
@@ -38,15 +38,6 @@ def copy_paper(folder: Path) -> Path:
     """A folder of one's own, a copy of the shipped one."""
     shutil.copytree(PAPER, folder)
     return folder
-
-
-def hashes(folder: Path) -> dict[str, str]:
-    """Every file's content, by its relative name."""
-    return {
-        p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
-        for p in sorted(folder.rglob("*"))
-        if p.is_file()
-    }
 
 
 def test_default_outputs(issued: Path) -> None:

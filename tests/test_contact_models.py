@@ -36,6 +36,7 @@ from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report import build
 from loopsheet.report.impacts.contact import law_of
 from loopsheet.report.impacts.simulation import simulate
+from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.plan.special import EXACT, in_elementary_terms
 from loopsheet.report.result import chi_square
 from loopsheet.report.study import Study
@@ -400,7 +401,7 @@ def test_a_model_is_one_file_and_one_line(tmp_path: Path) -> None:
     )
 
     def run(*words: str) -> str:
-        own = {**os.environ, "PYTHONPATH": str(tmp_path), "LOOPSHEET_CACHE": ""}
+        own = {**os.environ, "PYTHONPATH": str(tmp_path), SETTING: str(tmp_path / "kept")}
         done = subprocess.run(
             [sys.executable, *words], cwd=tmp_path, env=own, capture_output=True, text=True, check=False
         )

@@ -25,6 +25,7 @@ from random_campaigns import (
     SHEETS,
     UNCERTAIN,
     VARIANTS,
+    Campaign,
     Node,
     campaigns,
     drawn,
@@ -38,7 +39,7 @@ from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.kernels import compiled
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.judge.engines import LIMIT
+from loopsheet.report.judge.engines import LIMIT, Judge
 
 pytestmark = [pytest.mark.campaigns, pytest.mark.usefixtures("anew")]
 
@@ -201,9 +202,20 @@ def numpy_mutants(program: Program) -> Mutants:
                     yield name[1], what, replace(program, loops=loops)
 
 
+@pytest.fixture(scope="module")
+def chosen(sizes: Sizes) -> list[tuple[Campaign, Judge]]:
+    """What every changed program is asked, and what its answers are held to."""
+    return [(one, judge_of(one)) for one in drawn(campaigns(6, variants=[1]), 36, sizes.seed)]
+
+
 @pytest.mark.parametrize("name", ["numpy", "JavaScript"])
 def test_a_character_changed_in_a_program_is_caught(
-    require: Callable[..., str], tmp_path: Path, sizes: Sizes, summary: Say, name: str
+    require: Callable[..., str],
+    tmp_path: Path,
+    sizes: Sizes,
+    summary: Say,
+    chosen: list[tuple[Campaign, Judge]],
+    name: str,
 ) -> None:
     sheet, ours = SHEETS[1], name == "numpy"
     mutants = list(
@@ -221,9 +233,7 @@ def test_a_character_changed_in_a_program_is_caught(
     mutants = random.Random(sizes.seed).sample(mutants, some)
     programs = [javascript.program(sheet)] + ([] if ours else [program for _, _, program in mutants])
     with Node(require("node"), tmp_path, programs) as node:
-        chosen = drawn(campaigns(6, variants=[1]), 36, sizes.seed)
-        judges = [(one, judge_of(one)) for one in chosen]
-        honest = [(one, judge) for one, judge in judges if not judge.agreement(node.read(one, 0)[0]).findings]
+        honest = [(one, judge) for one, judge in chosen if not judge.agreement(node.read(one, 0)[0]).findings]
         assert len(honest) > 30
         for number, (column, what, program) in enumerate(mutants, start=1):
             found = (

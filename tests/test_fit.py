@@ -508,7 +508,7 @@ x, y, u = (IndexedBase(Symbol(name, real=True))[k] for name in "xyu")
 def squares(model: Expr, parameters: tuple[Symbol, ...], weight: Expr | None = None) -> LeastSquares:
     own = map("(L{})".format, itertools.count(1))
     words = {each: str(each) for each in parameters}
-    return LeastSquares("f", y, model, "y", words, weight, k, n, "(1)", own)
+    return LeastSquares("f", y, model, "y", words, weight, {}, k, n, "(1)", own)
 
 
 a, b, c = PARAMETERS = symbols("a b c", real=True)

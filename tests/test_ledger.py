@@ -21,7 +21,7 @@ from sympy import (
 
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
-from loopsheet.derivations.proof import prove, prove_equation
+from loopsheet.derivations.proof import prove, prove_entry
 from loopsheet.derivations.proved import Proof, ProofStatus
 from loopsheet.derivations.vocabulary import Quantity, Vocabulary
 
@@ -36,6 +36,10 @@ THIRD_HOLDS = Derivation.of(THIRD, (SECOND,), (a,), "")
 
 def statuses(*entries: Equation | Derivation) -> list[ProofStatus]:
     return [found.status for found in prove(Ledger(entries))]
+
+
+def _proof(entry: Equation | Derivation) -> Proof:
+    return prove_entry(entry, {}, Ledger(()))[0]
 
 
 def by_label(*entries: Equation | Derivation) -> dict[str, Proof]:
@@ -77,7 +81,7 @@ def test_what_rests_on_a_refuted_claim_is_undecided() -> None:
 
 
 def test_a_claim_without_a_derivation_is_undecided() -> None:
-    assert prove_equation(SECOND).status is ProofStatus.UNDECIDED
+    assert _proof(SECOND).status is ProofStatus.UNDECIDED
 
 
 @pytest.mark.parametrize(
@@ -206,7 +210,7 @@ SAID = Equation("(2)", (a, b + c), "")
     ],
 )
 def test_a_premise_that_says_what_the_claim_says_proves_nothing(premise: Equation) -> None:
-    found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
+    found = _proof(Derivation.of(SAID, (premise,), (a,), ""))
     assert found.status is ProofStatus.REFUSED
     assert found.remark == f"(2) rests on itself: (2) -> {premise.label} = (2)"
     assert found.rests_on == ()
@@ -233,7 +237,7 @@ def test_so_does_a_premise_with_a_number(kind: Kind) -> None:
     ],
 )
 def test_to_work_something_out_is_a_proof(premise: Equation) -> None:
-    found = prove_equation(Derivation.of(SAID, (premise,), (a,), ""))
+    found = _proof(Derivation.of(SAID, (premise,), (a,), ""))
     assert found.status is ProofStatus.PROVED
     assert found.rests_on == ("assumed",)
 
@@ -275,7 +279,7 @@ def test_a_circle_is_seen_through_what_its_premise_is_called() -> None:
 def test_a_circle_within_a_chain_of_steps_is_seen() -> None:
     between = Equation("", (a**2, (b + c) ** 2), "", title="between")
     chain = Derivation((Step(between, (assumed(a, b + c),), (a,), ""), Step(SAID, (between,), (a,), "")))
-    found = prove_equation(chain)
+    found = _proof(chain)
     assert found.status is ProofStatus.REFUSED
     assert found.remark == "(2) rests on itself: (2) -> between -> assumed = (2)"
 
@@ -296,8 +300,8 @@ def test_an_unknown_function_is_like_no_other() -> None:
     f, g = Function("f")(y), Function("g")(y)
     work = assumed(a, Integral(f, (y, 0, b)))
     same, other = (Equation("(1)", (2 * Integral(h, (y, 0, b)), 2 * a), "") for h in (f, g))
-    assert prove_equation(Derivation.of(same, (work,), (a,), "")).status is ProofStatus.REFUSED
-    assert "rests on itself" not in prove_equation(Derivation.of(other, (work,), (a,), "")).remark
+    assert _proof(Derivation.of(same, (work,), (a,), "")).status is ProofStatus.REFUSED
+    assert "rests on itself" not in _proof(Derivation.of(other, (work,), (a,), "")).remark
 
 
 # --- dimensions ---------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ import pytest
 
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report.cli import main
+from loopsheet.report.engines import ENGINES
 from loopsheet.report.study import Study
 
 HEAD = """from sympy import exp, log, sqrt
@@ -57,23 +58,22 @@ def test_one_that_is_positive_proves_nothing_false(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("fitted", [LINE, CURVE])
 def test_one_that_is_not_positive_has_no_value_in_any_engine(fitted: str, tmp_path: Path) -> None:
-    report = Study(folder(tmp_path, fitted.format(", positive=True"), FALLING)).proved
-    assert report.values.cell("b").reason.startswith("#")
-    assert [found for engine in report.engines for found in engine.findings] == []
-    assert main(["check", str(tmp_path)]) == 1
+    study = Study(folder(tmp_path, fitted.format(", positive=True"), FALLING))
+    assert study.computed.values.cell("b").reason.startswith("#")
+    assert [engine.findings for engine in study.engines] == [()] * len(ENGINES)
+    assert "b" in {cell.name for cell in study.computed.faults}
+
+
+def told(place: Path) -> str:
+    return "\n".join(check.message for check in Study(place).computed.oddities if check.word == "warning")
 
 
 @pytest.mark.parametrize("fitted", [LINE, CURVE])
-def test_one_outside_of_its_ends_is_told(
-    fitted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_one_outside_of_its_ends_is_told(fitted: str, tmp_path: Path) -> None:
     own = folder(tmp_path, fitted.format(", low=0.01, high=500"), FALLING)
-    main(["check", str(own)])
-    assert "warning: b: outside of what is said of b" in capsys.readouterr().out
-    inside = "low=-500, high=-0.01"
-    folder(tmp_path, fitted.format(", " + inside), FALLING)
-    main(["check", str(own)])
-    assert "outside of what is said of b" not in capsys.readouterr().out
+    assert "b: outside of what is said of b" in told(own)
+    folder(tmp_path, fitted.format(", low=-500, high=-0.01"), FALLING)
+    assert "outside of what is said of b" not in told(own)
 
 
 def test_a_root_says_itself_where_it_is_sought(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,7 +17,7 @@ from loopsheet.derivations import alpha_root
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Derivation, Equation, Step
 from loopsheet.derivations.evaluation import Tape
-from loopsheet.derivations.proof import check_step, prove, prove_equation
+from loopsheet.derivations.proof import check_step, prove, prove_entry
 from loopsheet.derivations.proved import Proof, ProofStatus
 from loopsheet.derivations.rebuilt import evaluated
 from loopsheet.derivations.soft_impact import LEDGER, XM, XP, E, V, alpha, beta
@@ -88,7 +88,7 @@ def test_every_premise_stands_before_its_use() -> None:
         if isinstance(entry, Derivation) and any(
             premise.origin.number for premise in entry.steps[0].premises
         ):
-            assert prove_equation(entry, {}, LEDGER).status is ProofStatus.UNDECIDED, entry.claim.label
+            assert prove_entry(entry, {}, LEDGER)[0].status is ProofStatus.UNDECIDED, entry.claim.label
 
 
 # --- wrong variants -------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_files import hashes
 from processors import lesser
 
 from loopsheet.report import build, stages, verification
@@ -26,14 +27,6 @@ from loopsheet.report.study import Study
 from loopsheet.report.verification import Verification, verify
 
 pytestmark = pytest.mark.usefixtures("keeping")  # what is patched here decides about no program of a sheet
-
-
-def hashes(folder: Path) -> dict[str, str]:
-    return {
-        p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
-        for p in sorted(folder.rglob("*"))
-        if p.is_file()
-    }
 
 
 @pytest.fixture(scope="module")

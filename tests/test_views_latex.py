@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from made_files import COMPLAINTS, log_of_latex
 
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
@@ -82,16 +83,6 @@ def test_what_is_foreign_is_escaped(report: Report) -> None:
     assert r"\input{" not in text
 
 
-def _log(folder: Path) -> str:
-    """Run pdflatex by hand: `compile` leaves no log."""
-    for _ in range(3):
-        subprocess.run(
-            ["pdflatex", "-no-shell-escape", "-interaction=nonstopmode", "report.tex"],
-            cwd=folder, capture_output=True, check=False, timeout=120,
-        )  # fmt: skip
-    return (folder / "report.log").read_text(encoding="latin-1")
-
-
 def test_the_paper_compiles_without_complaint(
     report: Report, tmp_path: Path, require: Callable[..., str]
 ) -> None:
@@ -109,8 +100,8 @@ def test_the_paper_compiles_without_complaint(
     pdf.compile(tmp_path)
     assert (tmp_path / "report.pdf").read_bytes() == first
 
-    log = _log(tmp_path)
-    assert not re.search(r"^!|Overfull|undefined|multiply defined|Missing character", log, re.MULTILINE)
+    log = log_of_latex(tmp_path)
+    assert not re.search(COMPLAINTS, log, re.MULTILINE)
     pypdf = pytest.importorskip("pypdf")
     document = pypdf.PdfReader(tmp_path / "report.pdf")
     assert document.metadata.title == HOSTILE.replace("☃", "[U+2603]").replace("α", "alpha")
@@ -157,7 +148,7 @@ def test_much_that_is_said_of_a_result_is_broken_into_lines(
     first = article.partition(r"\end{abstract}")[0] + r"\end{abstract}\end{document}"
     assert "; over 9 of 10 pairs" in first
     (tmp_path / "report.tex").write_text(first, encoding="utf-8")
-    assert not re.search(r"^!|Overfull", _log(tmp_path), re.MULTILINE)
+    assert not re.search(r"^!|Overfull", log_of_latex(tmp_path), re.MULTILINE)
 
 
 def test_no_heading_stands_alone_at_the_foot_of_a_page(
@@ -176,7 +167,7 @@ def test_no_heading_stands_alone_at_the_foot_of_a_page(
     )
     text = "\n\n".join([preamble, r"\begin{document}", *pages, r"\end{document}"])
     (tmp_path / "report.tex").write_text(text, encoding="utf-8")
-    assert not re.search(r"^!", _log(tmp_path), re.MULTILINE)
+    assert not re.search(r"^!", log_of_latex(tmp_path), re.MULTILINE)
     subprocess.run(["pdftotext", "report.pdf", "t.txt"], cwd=tmp_path, check=True, timeout=60)
     for page in (tmp_path / "t.txt").read_text(encoding="utf-8").split("\f"):
         assert not re.search(r"Derivations\s+\d*\s*$", page)
@@ -194,4 +185,4 @@ def test_a_page_on_which_a_long_table_ends_is_no_longer_than_others(
     pages = [above + r"row \\" * rows + below for rows in (4, 40, 90)]
     text = "\n".join([preamble, r"\begin{document}", *pages, r"\end{document}"])
     (tmp_path / "report.tex").write_text(text, encoding="utf-8")
-    assert not re.search(r"^!|Overfull \\vbox", _log(tmp_path), re.MULTILINE)
+    assert not re.search(r"^!|Overfull \\vbox", log_of_latex(tmp_path), re.MULTILINE)

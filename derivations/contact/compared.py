@@ -29,31 +29,21 @@ _U = {"v": PAPER["u_v"], "e": PAPER["u_e"], "x_p": PAPER["u_x"]}
 
 @dataclass(frozen=True)
 class Compared:
-    """A model beside the tests.
-
-    Parameters
-    ----------
-    quantities : tuple of Quantity
-        What it misses of each test, the root of the mean square of each kind; slopes, and the sum of squares.
-    equations : tuple of Equation
-        One for each.
-    without : mapping of Symbol to Symbol
-        What cells of the model are called if the test is left out.
-    """
+    """A model beside the tests."""
 
     quantities: tuple[Quantity, ...]
+    """What it misses of each test, the root of the mean square of each kind; slopes, and the sum of
+    squares."""
     equations: tuple[Equation, ...]
+    """One for each."""
     without: dict[Symbol, Symbol]
+    """What cells of the model are called if the test is left out."""
 
 
 def compared(model: ContactModel, number: str) -> Compared:
     """A model beside the tests.
 
-    Parameters
-    ----------
-    model : ContactModel
-    number : str
-        Of its equations, which get letters.
+    `number`: of its equations, which get letters.
     """
     letters, made = iter(ascii_lowercase), dict[Quantity, Equation]()
     mark = rf"\mathrm{{{model.mark}}}"

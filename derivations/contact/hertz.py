@@ -56,12 +56,8 @@ def lasts(exponent: Expr) -> Expr:
 def duration(x_m: Expr, x_p: Expr, e: Expr, compression: Expr = hertz, restitution: Expr = hertz) -> Expr:
     """How long a contact lasts under two powers of the approach: the way of each branch over its rate.
 
-    Parameters
-    ----------
-    x_m, x_p, e : Expr
-        Maximum approach, imprint, coefficient of restitution.
-    compression, restitution : Expr
-        The exponents of both branches.
+    `x_m`, `x_p` and `e`: maximum approach, imprint, coefficient of restitution. `compression` and
+    `restitution`: the exponents of both branches.
     """
     return x_m / v * lasts(compression) + (x_m - x_p) / (e * v) * lasts(restitution)
 

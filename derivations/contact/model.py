@@ -18,79 +18,54 @@ __all__ = ["Constant", "ContactModel"]
 
 @dataclass(frozen=True)
 class Constant:
-    """The one number that a model takes from the tests.
-
-    Parameters
-    ----------
-    of_test : tuple of Equation
-        What it would be by one test alone: formulas; one that is solved for what it `defines` has that on
-        both sides, and is a root between 0 and 1.
-    mean, without : Equation
-        The geometric mean of these over all tests, and over all but one.
-    needs : tuple of (Rel, str)
-        Without what a test tells nothing of it, and the sentences for that.
-    """
+    """The one number that a model takes from the tests."""
 
     of_test: tuple[Equation, ...]
+    """What it would be by one test alone: formulas; one that is solved for what it `defines` has that on both
+    sides, and is a root between 0 and 1."""
     mean: Equation
     without: Equation
+    """`mean` and `without`: the geometric mean of these over all tests, and over all but one."""
     needs: tuple[tuple[Rel, str], ...] = ()
+    """Without what a test tells nothing of it, and the sentences for that."""
 
 
 @dataclass(frozen=True)
 class ContactModel:
-    """A model of an impact.
-
-    Parameters
-    ----------
-    name : str
-        The last part of the names of its cells, ``johnson``.
-    title, mark : str
-        Author and what it is, ``Johnson, fully plastic``; the letters at its symbols.
-    assumes : str
-        In a sentence, what it takes for true.
-    source : str
-        Author, title, year.
-    quantities : tuple of Quantity
-        Its own symbols, called as their cells.
-    entries : tuple of Equation or Derivation
-        Its equations, in the order of a ledger.
-    cells : tuple of Equation
-        Those that tell a cell of all tests or of each, after the ones that they need.
-    predicts : mapping of str to Symbol
-        Its approach ``x_m``, force ``F_m``, duration ``t``, restitution ``e`` and imprint ``x_p``; what it
-        does not predict but is told is left out.
-    loading, unloading : Expr
-        The force up to the greatest approach, and from there; in terms of the approach x, of what is given
-        and of its cells.
-    constants : int
-        How many numbers it takes from the tests.
-    constant : Constant, optional
-        The only one of them.
-    left_out : mapping of Symbol to Symbol
-        What predicts a test that is left out, where its equations say so themselves.
-    needs : mapping of Symbol to (Rel, str)
-        Without what it says nothing of a test, and the sentence for that.
-    expects : mapping of Symbol to (Rel, str)
-        What it expects of a cell that has a value all the same, and what is odd where that does not hold.
-    """
+    """A model of an impact."""
 
     name: str
+    """The last part of the names of its cells, ``johnson``."""
     title: str
     mark: str
+    """`title` and `mark`: author and what it is, ``Johnson, fully plastic``; the letters at its symbols."""
     assumes: str
+    """In a sentence, what it takes for true."""
     source: str
+    """Author, title, year."""
     quantities: tuple[Quantity, ...]
+    """Its own symbols, called as their cells."""
     entries: tuple[Equation | Derivation, ...]
+    """Its equations, in the order of a ledger."""
     cells: tuple[Equation, ...]
+    """Those that tell a cell of all tests or of each, after the ones that they need."""
     predicts: Mapping[str, Symbol]
+    """Its approach ``x_m``, force ``F_m``, duration ``t``, restitution ``e`` and imprint ``x_p``; what it
+    does not predict but is told is left out."""
     loading: Expr
     unloading: Expr
+    """`loading` and `unloading`: the force up to the greatest approach, and from there; in terms of the
+    approach x, of what is given and of its cells."""
     constants: int = 0
+    """How many numbers it takes from the tests."""
     constant: Constant | None = None
+    """The only one of them."""
     left_out: Mapping[Symbol, Symbol] = field(default_factory=dict)
+    """What predicts a test that is left out, where its equations say so themselves."""
     needs: Mapping[Symbol, tuple[Rel, str]] = field(default_factory=dict)
+    """Without what it says nothing of a test, and the sentence for that."""
     expects: Mapping[Symbol, tuple[Rel, str]] = field(default_factory=dict)
+    """What it expects of a cell that has a value all the same, and what is odd where that does not hold."""
 
     @property
     def told(self) -> bool:

@@ -199,12 +199,10 @@ def crate(
 
     Parameters
     ----------
-    manifest : Manifest
     sizes : mapping of str to int
         Every file of the crate but the metadata itself, and its bytes.
     date : str
         YYYY-MM-DD.
-    licence : Entity
     people : sequence of Entity
         The author and the publisher, as far as there are any.
     """

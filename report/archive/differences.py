@@ -26,31 +26,21 @@ Held = tuple[float | None, str]
 
 @dataclass(frozen=True)
 class Move:
-    """A number that is another one.
-
-    Parameters
-    ----------
-    address : str
-        ``alpha[1-2]``.
-    unit : str
-        In which people read it; in SI, if that tells none.
-    kind : str
-        ``input`` if the user gives it, ``result`` of one of the headline, ``moved`` of all else.
-    before, after : float or None
-        In that unit; None where it has no value.
-    status : tuple of str
-        Before and after.
-    by : float and str, optional
-        The difference in SI with its unit, where a share tells nothing: of temperatures in degC.
-    """
+    """A number that is another one."""
 
     address: str
+    """``alpha[1-2]``."""
     unit: str
+    """In which people read it; in SI, if that tells none."""
     kind: str
+    """``input`` if the user gives it, ``result`` of one of the headline, ``moved`` of all else."""
     before: float | None
     after: float | None
+    """`before` and `after`: in that unit; None where it has no value."""
     status: tuple[str, str]
+    """Before and after."""
     by: tuple[float, str] | None = None
+    """The difference in SI with its unit, where a share tells nothing: of temperatures in degC."""
 
     @property
     def relative(self) -> float | None:
@@ -71,41 +61,29 @@ class OtherChange:
 
 @dataclass(frozen=True)
 class Differences:
-    """What distinguishes two results.
-
-    Parameters
-    ----------
-    before, after : str
-        Their names.
-    same : int
-        How many numbers are the same double, or have the same error; uncertainties are numbers too.
-    noise : int
-        How many differ by what rounding may do.
-    moved : tuple of Move
-        The others: what the user gives first, then the headline, then other scalars, then the rest in the
-        order of the sheet, what only leads to other cells last. ``u(alpha_mean)``, the standard uncertainty
-        of a number, stands behind what the user gives and behind a result; those of all else come last.
-    method : tuple of OtherChange
-        Columns that follow another equation, or have another unit or index set, and equations whose proof
-        came out otherwise.
-    added, removed : tuple of str
-        Columns and rows that only one of them has.
-    published : tuple of OtherChange
-        Published values with another verdict.
-    checks : tuple of OtherChange
-        What is told of the data: decisions on conformity, marks, warnings, what is expected or left out.
-    """
+    """What distinguishes two results."""
 
     before: str
     after: str
+    """`before` and `after`: their names."""
     same: int
+    """How many numbers are the same double, or have the same error; uncertainties are numbers too."""
     noise: int
+    """How many differ by what rounding may do."""
     moved: tuple[Move, ...]
+    """The others: what the user gives first, then the headline, then other scalars, then the rest in the
+    order of the sheet, what only leads to other cells last. ``u(alpha_mean)``, the standard uncertainty of a
+    number, stands behind what the user gives and behind a result; those of all else come last."""
     method: tuple[OtherChange, ...]
+    """Columns that follow another equation, or have another unit or index set, and equations whose proof came
+    out otherwise."""
     added: tuple[str, ...]
     removed: tuple[str, ...]
+    """`added` and `removed`: columns and rows that only one of them has."""
     published: tuple[OtherChange, ...]
+    """Published values with another verdict."""
     checks: tuple[OtherChange, ...]
+    """What is told of the data: decisions on conformity, marks, warnings, what is expected or left out."""
 
     @property
     def any(self) -> bool:
@@ -125,13 +103,8 @@ def compare(
     to which engines are held, for a number whose condition is 1. Who knows the conditions of the cells
     says what is allowed.
 
-    Parameters
-    ----------
-    before, after : Result
-    allowed : mapping of column name to mapping of index to float, optional
-        How much each cell may differ, in SI; used where it is more.
-    names : tuple of str
-        What they are called.
+    `allowed` (mapping of column name to mapping of index to float): how much each cell may differ, in SI;
+    used where it is more. `names`: what they are called.
     """
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []

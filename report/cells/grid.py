@@ -103,27 +103,18 @@ def as_issued(name: str) -> str:
 
 @dataclass(frozen=True)
 class Place:
-    """Where the cells of a quantity stand, one below the other.
-
-    Parameters
-    ----------
-    worksheet : str
-    row, column : int
-        The first cell, from 0.
-    rows : int
-        How many cells.
-    scale : Fraction
-        The unit of the cells, in SI.
-    zero : Fraction
-        Its zero, in SI.
-    """
+    """Where the cells of a quantity stand, one below the other."""
 
     worksheet: str
     row: int
     column: int
+    """`row` and `column`: the first cell, from 0."""
     rows: int = 1
+    """How many cells."""
     scale: Fraction = Fraction(1)
+    """The unit of the cells, in SI."""
     zero: Fraction = Fraction(0)
+    """Its zero, in SI."""
 
     def to_si(self, number: str) -> str:
         """The formula of a number of that unit, in SI; as a factor."""
@@ -176,19 +167,13 @@ def quoted(worksheet: str) -> str:
 
 
 class Grouped(NamedTuple):
-    """The words by which rows stand in groups: sums go by the rows as issued, whatever is sorted since.
-
-    Parameters
-    ----------
-    own, group : Place
-        The words beside the rows, and beside the groups.
-    rows : tuple of int
-        Of each row, the row of its group.
-    """
+    """The words by which rows stand in groups: sums go by the rows as issued, whatever is sorted since."""
 
     own: Place
     group: Place
+    """`own` and `group`: the words beside the rows, and beside the groups."""
     rows: tuple[int, ...]
+    """Of each row, the row of its group."""
 
     @staticmethod
     def same(own: str, group: str) -> str:
@@ -197,17 +182,11 @@ class Grouped(NamedTuple):
 
 
 class FilledDown(NamedTuple):
-    """A formula, filled down over so many rows: rows without a ``$`` move with the row that they stand in.
-
-    Parameters
-    ----------
-    rows : int
-    first : str
-        The formula of the first of them, beginning with ``=``.
-    """
+    """A formula, filled down over so many rows: rows without a ``$`` move with the row that they stand in."""
 
     rows: int
     first: str
+    """The formula of the first of them, beginning with ``=``."""
 
     def formulas(self) -> list[str]:
         """The formula of each row.
@@ -229,60 +208,41 @@ def _moved(down: int, found: re.Match[str]) -> str:
 
 @dataclass(frozen=True)
 class CellBlock:
-    """The cells of one quantity.
-
-    Parameters
-    ----------
-    name : str
-        The column's name; for a cell on the way to a root the column's, a dot and its own.
-    kind : str
-        ``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
-        ``computed``, ``carried`` (another axis' cells, repeated on this one), ``step`` (on the way to a
-        root), ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart).
-    title, meaning : str
-        What stands above or beside its cells.
-    place : Place
-    filled : tuple of FilledDown
-        The formulas of the cells, from top to bottom; none if the cells hold values.
-    array : bool
-        Whether they must be entered as array formulas.
-    shows : tuple of str
-        Where its values come from: the ``labels`` of an axis, a ``column``, which may be ``drawn``,
-        ``carried`` to an axis by an index, or ``typed`` as it is now, or a ``cell`` on the way to a root.
-    values : tuple of float, str or None
-        What the cells show, in the cells' unit: a number, an error's code, or None for an error of Excel's.
-    unit : str
-        The unit of its cells, as text.
-    source : str
-        The number of its equation, or where it was given.
-    of : str
-        The column whose root it is on the way to, or that it carries or checks.
-    step : int
-        Which step towards the root; 0 before the first.
-    kept : mapping of str to str
-        For each axis that is summed over, the array formula that counts its rows that have values.
-    bounds : Bounds
-        What a given cell may be, in its unit; a count no other than that of the rows there are.
-    guard : str
-        The formula, without its equals sign, that says whether the cell `{0}` is that.
-    """
+    """The cells of one quantity."""
 
     name: str
+    """The column's name; for a cell on the way to a root the column's, a dot and its own."""
     kind: str
+    """``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
+    ``computed``, ``carried`` (another axis' cells, repeated on this one), ``step`` (on the way to a root),
+    ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart)."""
     title: str
     meaning: str
+    """`title` and `meaning`: what stands above or beside its cells."""
     place: Place
     filled: tuple[FilledDown, ...] = ()
+    """The formulas of the cells, from top to bottom; none if the cells hold values."""
     array: bool = False
+    """Whether they must be entered as array formulas."""
     shows: tuple[str, ...] = ()
+    """Where its values come from: the ``labels`` of an axis, a ``column``, which may be ``drawn``,
+    ``carried`` to an axis by an index, or ``typed`` as it is now, or a ``cell`` on the way to a root."""
     values: tuple[float | str | None, ...] = ()
+    """What the cells show, in the cells' unit: a number, an error's code, or None for an error of Excel's."""
     unit: str = "1"
+    """The unit of its cells, as text."""
     source: str = ""
+    """The number of its equation, or where it was given."""
     of: str = ""
+    """The column whose root it is on the way to, or that it carries or checks."""
     step: int = 0
+    """Which step towards the root; 0 before the first."""
     kept: Mapping[str, str] = field(default_factory=dict)
+    """For each axis that is summed over, the array formula that counts its rows that have values."""
     bounds: Bounds = field(default_factory=Bounds)
+    """What a given cell may be, in its unit; a count no other than that of the rows there are."""
     guard: str = ""
+    """The formula, without its equals sign, that says whether the cell `{0}` is that."""
 
     @cached_property
     def formulas(self) -> tuple[str, ...]:
@@ -292,29 +252,20 @@ class CellBlock:
 
 @dataclass(frozen=True)
 class Grid:
-    """All cells of the workbook that come from the sheet.
-
-    Parameters
-    ----------
-    blocks : tuple of CellBlock
-        Worksheet by worksheet, from left to right or from top to bottom.
-    axes : mapping of worksheet name to Axis
-        Those that hold the rows of an axis.
-    drawn : Drawn or None
-    notes : mapping of worksheet name to Place
-        Free cells beside the given columns of an axis, for what is wrong with them.
-    words : mapping of worksheet name to tuple of Place
-        Free columns beside the numbers of its rows, for what is said of them in words; one beside groups.
-    groups : mapping of worksheet name to tuple of Grouped
-        How rows that stand in groups are held to their words.
-    """
+    """All cells of the workbook that come from the sheet."""
 
     blocks: tuple[CellBlock, ...]
+    """Worksheet by worksheet, from left to right or from top to bottom."""
     axes: Mapping[str, Axis]
+    """By worksheet name; those that hold the rows of an axis."""
     drawn: Drawn | None = None
     notes: Mapping[str, Place] = field(default_factory=dict)
+    """By worksheet name; free cells beside the given columns of an axis, for what is wrong with them."""
     words: Mapping[str, tuple[Place, ...]] = field(default_factory=dict)
+    """By worksheet name; free columns beside the numbers of its rows, for what is said of them in words; one
+    beside groups."""
     groups: Mapping[str, tuple[Grouped, ...]] = field(default_factory=dict)
+    """By worksheet name; how rows that stand in groups are held to their words."""
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

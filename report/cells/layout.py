@@ -17,25 +17,18 @@ __all__ = ["Layout", "Precedent", "evenly", "how_large", "lay_out", "precedents"
 
 @dataclass(frozen=True)
 class Layout:
-    """The rows of one axis.
-
-    Parameters
-    ----------
-    size : int
-        How many rows.
-    rows : mapping of str to integer array (size,)
-        For each index that formulas may use, by what it is called, the row it names, from 0: its own, those
-        that it is made of, the groups that it belongs to.
-    ordinals : mapping of str to float array (size,)
-        Running numbers that formulas use as values, from 1.
-    labels : integer array (size, parts)
-        How each row is called: ``2`` for a test, ``1 2`` for a pair, ``1 2 7`` for a point.
-    """
+    """The rows of one axis."""
 
     size: int
+    """How many rows."""
     rows: Mapping[str, NDArray[np.intp]]
+    """Of shape (size,); for each index that formulas may use, by what it is called, the row it names, from 0:
+    its own, those that it is made of, the groups that it belongs to."""
     ordinals: Mapping[str, NDArray[np.float64]]
+    """Of shape (size,); running numbers that formulas use as values, from 1."""
     labels: NDArray[np.int64]
+    """Of shape (size, parts); how each row is called: ``2`` for a test, ``1 2`` for a pair, ``1 2 7`` for a
+    point."""
     starts: NDArray[np.intp] | None = None
     """Of rows in groups, the first of each group."""
 
@@ -71,7 +64,6 @@ def lay_out(
 
     Parameters
     ----------
-    sheet : Sheet
     labels : mapping of axis name to sequence of int
         The rows' numbers of the axes that come with the data; of rows in groups, that of each row's group.
     counts : mapping of column name to int
@@ -158,22 +150,15 @@ def _members(axis: MemberAxis, parent: Layout, groups: Sequence[int]) -> Layout:
 
 @dataclass(frozen=True)
 class Precedent:
-    """A cell that a rule names, with the rows it stands for.
-
-    Parameters
-    ----------
-    column : Column
-        The column it belongs to.
-    over : Axis or None
-        The axis it is summed over; None if a row names it itself.
-    rows : integer array or None
-        For each row of the naming column's axis, or of the summed one, the row it names. None: each
-        names the row of the same number, or the only one.
-    """
+    """A cell that a rule names, with the rows it stands for."""
 
     column: Column
+    """The column it belongs to."""
     over: Axis | None
+    """The axis it is summed over; None if a row names it itself."""
     rows: NDArray[np.intp] | None
+    """For each row of the naming column's axis, or of the summed one, the row it names. None: each names the
+    row of the same number, or the only one."""
     starts: NDArray[np.intp] | None = None
     """Where it is summed over a group, the first of the rows of each, on the axis that it is summed over."""
 

@@ -17,12 +17,10 @@ def inside(limit: Limit, column: Column, name: str, says: str) -> Equation:
 
     Parameters
     ----------
-    limit : Limit
     column : Column
         Whose limit it is.
     name : str
         What the margin is called.
-    says : str
 
     Raises
     ------

@@ -24,20 +24,13 @@ __all__ = ["Margin", "MarkCount", "Marks", "margins", "with_margins"]
 
 @dataclass(frozen=True)
 class Margin:
-    """One limit of a column, and the column that says how far inside of it each row lies.
-
-    Parameters
-    ----------
-    of : Column
-        Whose cells carry the mark.
-    limit : Limit
-    column : Column
-        In SI units of what the limit compares; negative outside.
-    """
+    """One limit of a column, and the column that says how far inside of it each row lies."""
 
     of: Column
+    """Whose cells carry the mark."""
     limit: Limit
     column: Column
+    """In SI units of what the limit compares; negative outside."""
 
 
 @dataclass(frozen=True)
@@ -112,16 +105,10 @@ def with_margins(sheet: Sheet) -> Sheet:
 
 @dataclass(frozen=True)
 class Marks:
-    """Which cells lie outside of what limits.
-
-    Parameters
-    ----------
-    values : Values
-        Of the sheet with its margins, without a batch.
-    margins : tuple of Margin
-    """
+    """Which cells lie outside of what limits."""
 
     values: Values
+    """Of the sheet with its margins, without a batch."""
     margins: tuple[Margin, ...]
 
     def outside(self, margin: Margin) -> NDArray[np.bool_]:

@@ -16,17 +16,11 @@ __all__ = ["Group", "dependents_of", "precedents_of"]
 
 @dataclass(frozen=True)
 class Group:
-    """Some cells of one column.
-
-    Parameters
-    ----------
-    column : Column
-    rows : tuple of int
-        Their rows, from 0.
-    """
+    """Some cells of one column."""
 
     column: Column
     rows: tuple[int, ...]
+    """Their rows, from 0."""
 
     def cells(self, values: Values) -> Iterator[Cell]:
         """The cells, in the order of the rows."""
@@ -37,12 +31,7 @@ class Group:
 def precedents_of(values: Values, column: Column, row: int) -> tuple[Group, ...]:
     """The cells that a cell is computed from, one group for each cell or sum that its rule names.
 
-    Parameters
-    ----------
-    values : Values
-    column : Column
-    row : int
-        From 0.
+    `row`: from 0.
     """
     named = precedents(values.sheet, values.layouts, column)
     return tuple(Group(one.column, _named_by(one, row, values)) for one in named)

@@ -125,7 +125,6 @@ def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:
     ----------
     sheet : Sheet or mapping of str to Column
         The columns that the formula names.
-    column : Column
 
     Raises
     ------

@@ -91,10 +91,7 @@ def rows_kept(
 def how_many(kept: Mapping[str, Mask]) -> dict[str, int]:
     """For every axis of which sums leave rows out, how many they run over; without a batch.
 
-    Parameters
-    ----------
-    kept : mapping of axis name to boolean array (..., rows)
-        From :func:`rows_kept`.
+    `kept` (mapping of axis name to boolean array (..., rows)): from :func:`rows_kept`.
     """
     return {axis: int(mask.sum()) for axis, mask in kept.items() if mask.ndim == 1 and not mask.all()}
 
@@ -171,31 +168,24 @@ class Values:
 
     Arrays have the dimensions (..., rows), the batch first; a scalar has one row. A column that rests on
     nothing with a batch has none. Cells, their labels and reasons are of values without a batch.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    layouts : mapping of axis name to Layout
-    value : mapping of column name to float array (..., rows)
-        SI; NaN where the status is not OK.
-    status : mapping of column name to integer array (..., rows)
-        :class:`Status`.
-    roots : mapping of column name to mapping of row to tuple of float
-        For ambiguous cells, all the roots that were found; for undecided ones, the ends of the part of the
-        unknown's interval where it was not decided. Without a batch.
-    counted : mapping of column name to mapping of axis name to int
-        How many rows the sums of a column ran over, where some were left out; without a batch.
-    broken : mapping of column name to integer array (..., rows)
-        Which of the column's conditions a row breaks first, from 1; 0 for none.
     """
 
     sheet: Sheet
     layouts: Mapping[str, Layout]
+    """By axis name."""
     value: Mapping[str, NDArray[np.float64]]
+    """Of shape (..., rows), by column name; SI; NaN where the status is not OK."""
     status: Mapping[str, NDArray[np.uint8]]
+    """Of shape (..., rows), by column name; :class:`Status`."""
     roots: Mapping[str, Mapping[int, tuple[float, ...]]] = field(default_factory=dict)
+    """By column name; for ambiguous cells, all the roots that were found; for undecided ones, the ends of the
+    part of the unknown's interval where it was not decided. Without a batch."""
     counted: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    """By column name; how many rows the sums of a column ran over, where some were left out; without a
+    batch."""
     broken: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
+    """Of shape (..., rows), by column name; which of the column's conditions a row breaks first, from 1; 0
+    for none."""
     words: Mapping[str, Mapping[tuple[int, ...], str]] = field(default_factory=dict)
     """What the rows of an axis are known by besides their numbers, by its name and their labels."""
 

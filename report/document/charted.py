@@ -24,24 +24,15 @@ PREFIXES = (("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3))
 
 @dataclass(frozen=True)
 class Scale:
-    """An axis: its title, the unit of its numbers and the unit's size in SI.
-
-    Parameters
-    ----------
-    title : Letters
-    unit : str
-    size : float
-    zero : float
-        Zero of the unit in SI.
-    prefixed : bool
-        Whether the unit takes one of :data:`PREFIXES`.
-    """
+    """An axis: its title, the unit of its numbers and the unit's size in SI."""
 
     title: Letters
     unit: str
     size: float
     zero: float
+    """Zero of the unit in SI."""
     prefixed: bool
+    """Whether the unit takes one of :data:`PREFIXES`."""
 
     def titled(self, unit: str) -> Letters:
         """With a unit behind it."""

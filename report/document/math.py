@@ -34,10 +34,7 @@ _TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")
 class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     """LaTeX in the order in which the author wrote it.
 
-    Parameters
-    ----------
-    names : mapping of str to str
-        As for :func:`name_latex`.
+    `names`: as for :func:`name_latex`.
     """
 
     def __init__(self, names: Mapping[str, str] | None = None) -> None:

@@ -17,12 +17,7 @@ Terms = list[tuple[bool, str]]
 def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
     """LaTeX of all names of a report: as its columns print them, else as its vocabulary does.
 
-    Parameters
-    ----------
-    vocabulary : Vocabulary
-        Of the ledger.
-    columns : iterable of Column
-        Of the sheet.
+    `vocabulary`: of the ledger. `columns`: of the sheet.
     """
     names = {name: quantity.latex for name, quantity in vocabulary.items()}
     for column in columns:

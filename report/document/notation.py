@@ -15,19 +15,13 @@ __all__ = ["FUNCTIONS", "NONE", "Notation", "fragments", "plain", "read"]
 
 
 class Notation(NamedTuple):
-    r"""A piece of notation.
-
-    Parameters
-    ----------
-    kind : str
-        With a text: ``letter``, ``upright`` (a word), ``number``, ``sign``, ``text``, ``space`` (in em).
-        With parts: ``row``; ``scripts`` (base, below, above; an empty row is none); ``limits`` (the same, in
-        lines of their own where there is room); ``fraction``; ``root``; ``fence`` (the text has both its
-        ends); ``accent`` (the text is above the part); ``under`` (base, below); ``cases`` and ``line`` (its
-        rows, their cells).
-    """
+    r"""A piece of notation."""
 
     kind: str
+    """With a text: ``letter``, ``upright`` (a word), ``number``, ``sign``, ``text``, ``space`` (in em). With
+    parts: ``row``; ``scripts`` (base, below, above; an empty row is none); ``limits`` (the same, in lines of
+    their own where there is room); ``fraction``; ``root``; ``fence`` (the text has both its ends); ``accent``
+    (the text is above the part); ``under`` (base, below); ``cases`` and ``line`` (its rows, their cells)."""
     text: str = ""
     parts: tuple[Notation, ...] = ()
 

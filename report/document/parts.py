@@ -56,30 +56,21 @@ def slug(label: str) -> str:
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a column.
-
-    Parameters
-    ----------
-    name, latex, unit, meaning
-        As the column's.
-    given : bool
-        Whether its cells come from the user.
-    sources : tuple of str
-        Labels of the equations it comes from.
-    format : str
-        The ``table-format`` of siunitx.
-    places : int
-        Digits behind the decimal point, at most.
-    """
+    """The head of a column."""
 
     name: str
     latex: str
     unit: str
     meaning: str
+    """`name`, `latex`, `unit` and `meaning`: as the column's."""
     given: bool
+    """Whether its cells come from the user."""
     sources: tuple[str, ...]
+    """Labels of the equations it comes from."""
     format: str = "1"
+    """The ``table-format`` of siunitx."""
     places: int = 0
+    """Digits behind the decimal point, at most."""
 
 
 def described(head: Head, label: tuple[int, ...]) -> str:
@@ -90,23 +81,15 @@ def described(head: Head, label: tuple[int, ...]) -> str:
 
 @dataclass(frozen=True)
 class Item:
-    """A cell as it is shown.
-
-    Parameters
-    ----------
-    cell : Cell
-    head : Head
-        Of its column.
-    figure : Numeral or None
-        Its number; None if it has none, or if it was printed in another notation.
-    printed : str or None
-        A given number as the user printed it.
-    """
+    """A cell as it is shown."""
 
     cell: Cell
     head: Head
+    """Of its column."""
     figure: Numeral | None
+    """Its number; None if it has none, or if it was printed in another notation."""
     printed: str | None = None
+    """A given number as the user printed it."""
     mark: str = ""
     """What it lies outside of, if it does."""
 
@@ -216,40 +199,25 @@ class SourceGroup:
 
 @dataclass(frozen=True)
 class Written:
-    """An equation, written.
-
-    Parameters
-    ----------
-    sides : tuple of terms
-        LaTeX of its sides.
-    text : str
-        For a terminal.
-    conditions : tuple of str
-        LaTeX of its conditions.
-    where : tuple of str
-        These for a terminal.
-    speaks_of : str
-        LaTeX that says of which row it speaks, if it is an instance for one.
-    """
+    """An equation, written."""
 
     sides: tuple[Terms, ...]
+    """LaTeX of its sides."""
     text: str
+    """For a terminal."""
     conditions: tuple[str, ...]
+    """LaTeX of its conditions."""
     where: tuple[str, ...]
+    """These for a terminal."""
     speaks_of: str
+    """LaTeX that says of which row it speaks, if it is an instance for one."""
 
 
 @dataclass(frozen=True)
 class Placed:
-    """An equation of a column with places for the numbers in it.
-
-    Parameters
-    ----------
-    latex : str
-        With ``@n@`` for the n-th cell in it; empty if the column is given or sums over rows.
-    cells : tuple of (str or None, str or None)
-        What belongs into each place: a column and an index, or how many rows an axis has.
-    """
+    """An equation of a column with places for the numbers in it."""
 
     latex: str
+    """With ``@n@`` for the n-th cell in it; empty if the column is given or sums over rows."""
     cells: tuple[tuple[str | None, str | None], ...]
+    """What belongs into each place: a column and an index, or how many rows an axis has."""

@@ -48,16 +48,10 @@ def figures(report: Report) -> tuple[FigureSpec, ...]:
 
 @dataclass(frozen=True)
 class RefereedPair:
-    """A published value as the referee sees it.
-
-    Parameters
-    ----------
-    pair : Pair
-        It and its recomputation.
-    found : Verdict
-    """
+    """A published value as the referee sees it."""
 
     pair: Pair
+    """It and its recomputation."""
     found: Verdict
 
     @property

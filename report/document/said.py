@@ -70,11 +70,7 @@ class Role(NamedTuple):
 class Said:
     """What the roles of narratives stand for: nothing, where a report has nothing of that name.
 
-    Parameters
-    ----------
-    material : Material
-    drawn : collection of str
-        Names of the figures that were drawn.
+    `drawn`: names of the figures that were drawn.
     """
 
     def __init__(self, material: Material, drawn: Collection[str]) -> None:

@@ -111,12 +111,7 @@ def _column(made: _Made, cells: Iterable[Any]) -> TableColumn:
 
 
 class Tables:
-    """Makes the tables of a report.
-
-    Parameters
-    ----------
-    material : Material
-    """
+    """Makes the tables of a report."""
 
     def __init__(self, material: Material) -> None:
         self.material, self.report = material, material.report

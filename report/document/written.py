@@ -19,13 +19,7 @@ __all__ = ["gone", "placed", "text_of", "written"]
 def written(equation: Equation, names: Mapping[str, str], vocabulary: Vocabulary) -> Written:
     """How an equation is written.
 
-    Parameters
-    ----------
-    equation : Equation
-    names : mapping of str to str
-        From :func:`~loopsheet.report.document.names.latex_names`.
-    vocabulary : Vocabulary
-        Of the ledger.
+    `names`: from :func:`~loopsheet.report.document.names.latex_names`. `vocabulary`: of the ledger.
     """
     found: Written | None = known(equation, "written")
     if found is None:

@@ -35,11 +35,7 @@ JUMPS = (floor, ceiling, sign, Piecewise)
 def certified(sheet: Sheet, column: Column) -> bool:
     """Whether the form of a root changes sign at most once between its turning points, whatever the inputs.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    column : Column
-        Its rule is a :class:`~loopsheet.report.sheet.RootNode`.
+    `column`: its rule is a :class:`~loopsheet.report.sheet.RootNode`.
     """
     rule = column.rule
     assert isinstance(rule, Root)
@@ -144,11 +140,7 @@ class _AnyRows:
 def slope(form: Expr, unknown: Symbol) -> tuple[Expr, Boolean]:
     """The slope of a form, and where the form is sure to be continuous so that the slope tells its course.
 
-    Parameters
-    ----------
-    form : Expr
-    unknown : Symbol
-        Of which only is assumed what holds in the interval.
+    `unknown`: of which only is assumed what holds in the interval.
     """
     jumps = any(part.has(unknown) for part in form.atoms(*JUMPS))
     return diff(form, unknown), false if jumps else defined(form)
@@ -167,16 +159,7 @@ def typed_form(sheet: Sheet, plan: Plan, node: RootNode) -> tuple[Expr, Symbol]:
 
 
 def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
-    """A function of what a root names and of its unknown: the form, its slope, whether that tells its course.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    plan : Plan
-        Of the sheet.
-    node : RootNode
-        Of the plan.
-    """
+    """A function of what a root names and of its unknown: form, slope, whether that tells its course."""
     form, plain = typed_form(sheet, plan, node)
     for steepness, known in (slope(form, plain), (form, false)):
         try:

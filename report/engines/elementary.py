@@ -51,10 +51,7 @@ cache."""
 def exp(x: Any) -> Any:
     """The exponential.
 
-    Parameters
-    ----------
-    x : float array
-        What has an arithmetic of its own, such as intervals, does it by that.
+    `x` (float array): what has an arithmetic of its own, such as intervals, does it by that.
     """
     if not _is_plain(x):
         return np.exp(x)
@@ -68,10 +65,7 @@ def exp(x: Any) -> Any:
 def log(x: Any) -> Any:
     """The natural logarithm; of what is not positive and finite, NumPy's.
 
-    Parameters
-    ----------
-    x : float array
-        As for :func:`exp`.
+    `x` (float array): as for :func:`exp`.
     """
     if not _is_plain(x):
         return np.log(x)
@@ -85,10 +79,7 @@ def log(x: Any) -> Any:
 def power(x: Any, y: Any) -> Any:
     """x to the y; of zeros and infinities, and of negative numbers to what is not whole, NumPy's.
 
-    Parameters
-    ----------
-    x, y : float arrays
-        As for :func:`exp`.
+    `x` and `y` (float arrays): as for :func:`exp`.
     """
     if not (_is_plain(x) and _is_plain(y)):
         return np.power(x, y)
@@ -104,10 +95,8 @@ def power(x: Any, y: Any) -> Any:
 def exp_beside(x: Any) -> Any:
     """The exponential of a batch that lies close together: a few terms beside that of its first element.
 
-    Parameters
-    ----------
-    x : float array (batch, ...)
-        As for :func:`exp`. The last bits of an element hang on which is the first of the batch.
+    `x` (float array (batch, ...)): as for :func:`exp`. The last bits of an element hang on which is the first
+    of the batch.
     """
     if not _is_plain(x) or np.ndim(x) < 2:
         return exp(x)
@@ -130,10 +119,7 @@ def exp_beside(x: Any) -> Any:
 def log_beside(x: Any) -> Any:
     """The natural logarithm of a batch that lies close together: a few terms beside its first element's.
 
-    Parameters
-    ----------
-    x : float array (batch, ...)
-        As for :func:`exp_beside`.
+    `x` (float array (batch, ...)): as for :func:`exp_beside`.
     """
     if not _is_plain(x) or np.ndim(x) < 2:
         return log(x)

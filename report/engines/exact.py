@@ -51,33 +51,24 @@ _ROUGHLY = 1e-12
 
 @dataclass(frozen=True)
 class ExactValues:
-    """Values of every cell to 50 digits.
-
-    Parameters
-    ----------
-    value : mapping of column name to list of mpf or None
-        SI; None where the status is not OK.
-    status : mapping of column name to list of Status
-    roots : mapping of column name to mapping of row to tuple of mpf
-        All roots of ambiguous cells; of undecided ones, the part of the interval that was not decided.
-    layouts, counted, broken
-        As those of :class:`~loopsheet.report.cells.values.Values`.
-    """
+    """Values of every cell to 50 digits."""
 
     value: Mapping[str, list[Any]]
+    """By column name; SI; None where the status is not OK."""
     status: Mapping[str, list[Status]]
+    """By column name."""
     roots: Mapping[str, Mapping[int, tuple[Any, ...]]]
+    """By column name; all roots of ambiguous cells; of undecided ones, the part of the interval that was not
+    decided."""
     layouts: Mapping[str, Layout]
     counted: Mapping[str, Mapping[str, int]]
     broken: Mapping[str, NDArray[np.uint8]]
+    """`layouts`, `counted` and `broken`: as those of :class:`~loopsheet.report.cells.values.Values`."""
 
     def rounded(self, sheet: Sheet) -> Values:
         """Every cell as the double that is nearest to it, the same on every processor.
 
-        Parameters
-        ----------
-        sheet : Sheet
-            What was evaluated, or a part that rests on nothing else.
+        `sheet`: what was evaluated, or a part that rests on nothing else.
         """
         names = [column.name for column in sheet.order]
         return Values(
@@ -145,7 +136,6 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
 
     Parameters
     ----------
-    sheet : Sheet
     labels : mapping of axis name to sequence of int
     data : mapping of column name to a number, or a sequence of numbers, in SI
         Fractions are taken exactly; None or NaN is a missing datum.
@@ -182,10 +172,7 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
 def laid_out(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[str, Any]) -> dict[str, Layout]:
     """The rows of every axis.
 
-    Parameters
-    ----------
-    sheet, labels, data
-        As for :func:`evaluate`.
+    `sheet`, `labels` and `data`: as for :func:`evaluate`.
     """
     repeats = [axis.repeats for axis in sheet.axes if axis.repeats]
     numbers = {name: _datum(_rows(data[name])[0], sheet.bounds[name]) for name in repeats}
@@ -446,12 +433,7 @@ def _come_to(last: Any, before: Any) -> Any:
 class _Scope:
     """Functions of a row of a column (and of the unknown of a root), of texts.
 
-    Parameters
-    ----------
-    engine : _Exact
-    column : Column
-    kept : mapping of axis name to list of int
-        The rows that sums over an axis run over.
+    `kept` (mapping of axis name to list of int): the rows that sums over an axis run over.
     """
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:

@@ -32,8 +32,6 @@ def brackets(enclose: Enclose, low: Any, high: Any, signs: Sequence[Any]) -> lis
 
     Parameters
     ----------
-    enclose : callable
-    low, high : mpf
     signs : sequence of mpf or None
         The equation's at both ends, where the rule gives it.
 
@@ -73,13 +71,9 @@ def _parts(enclose: Enclose, low: Any, high: Any, halvings: int, left: Iterator[
 def of_mpmath(text: str, kinds: Sequence[str]) -> Callable[[Sequence[Any]], Enclose]:
     """What encloses a form by mpmath's intervals, for the values of the cells that it names.
 
-    Parameters
-    ----------
-    text : str
-        The function of these and of the unknown that returns the form, its slope, and the differences that
-        must compare with zero so that the slope tells its course.
-    kinds : sequence of str
-        How, for each (:func:`~loopsheet.report.engines.interval_functions.holds`).
+    `text`: the function of these and of the unknown that returns the form, its slope, and the differences
+    that must compare with zero so that the slope tells its course. `kinds`: how, for each
+    (:func:`~loopsheet.report.engines.interval_functions.holds`).
     """
     run = running(text)
 
@@ -109,10 +103,8 @@ def of_arrays(
 ) -> Enclose:
     """What encloses a form by its printed program, for the cells of one row.
 
-    Parameters
-    ----------
-    kernel, cells, terms_of, kept
-        As for :class:`~loopsheet.report.engines.numpy_enclosed.EnclosedRows`.
+    `kernel`, `cells`, `terms_of` and `kept`: as for
+    :class:`~loopsheet.report.engines.numpy_enclosed.EnclosedRows`.
     """
     rows = EnclosedRows(kernel, cells, terms_of, kept, (1,))
 

@@ -42,22 +42,15 @@ _SMALLEST = "(2)^(0-1022)"
 
 @dataclass(frozen=True)
 class Places:
-    """Where everything stands.
-
-    Parameters
-    ----------
-    columns : mapping of str to Place
-        Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
-        checked cells (:func:`~loopsheet.report.cells.grid.checked`), which all formulas name.
-    typed : mapping of str to Place
-        Of given columns, where they are typed.
-    indices : mapping of axis name to tuple of Place
-        The numbers of an axis' rows, one place a part.
-    """
+    """Where everything stands."""
 
     columns: Mapping[str, Place]
+    """Of columns, auxiliaries (``alpha.u_1``) and carried cells, by name; of a given column, those of its
+    checked cells (:func:`~loopsheet.report.cells.grid.checked`), which all formulas name."""
     typed: Mapping[str, Place]
+    """Of given columns, where they are typed."""
     indices: Mapping[str, tuple[Place, ...]]
+    """By axis name; the numbers of an axis' rows, one place a part."""
 
 
 def carried_name(cells: Leaf) -> str:
@@ -97,11 +90,9 @@ class Formulas:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         Of the sheet.
     layouts : mapping of axis name to Layout
-    places : Places
     """
 
     def __init__(self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places) -> None:
@@ -413,7 +404,7 @@ class _Writing:
                 if self.axis is None:
                     # Of a sum without any row left, the first row's code says nothing of that.
                     failed = f"IF({begun}={ended},{failed},{{}})"
-            elif each.name != self.column.name:
+            elif self.axis is not None:
                 # All rows rest on a single number, and on its error.
                 other = self.address(Leaf("cells", pass_name(each.name, 0)))
                 gone = f"IF(ISNUMBER({other}),{gone},{other})"
@@ -441,12 +432,8 @@ class _Writing:
 def _stretches(steps: NDArray[np.intp], near: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
     """The first and the last row of stretches in which each address stays or moves with its row.
 
-    Parameters
-    ----------
-    steps : array of int, shape (addresses, rows - 1)
-        How far each goes from a row to the next.
-    near : array of bool, shape (addresses,)
-        Whether it may move.
+    `steps` (array of int, shape (addresses, rows - 1)): how far each goes from a row to the next. `near`
+    (array of bool, shape (addresses,)): whether it may move.
     """
     stays = (steps == 0) | (near[:, None] & (steps == 1))
     breaks = ~stays.all(axis=0)

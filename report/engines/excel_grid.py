@@ -43,7 +43,6 @@ def grid(
 
     Parameters
     ----------
-    sheet : Sheet
     values : Values
         All columns, computed, without a batch dimension; those that are not of the sheet are the margins
         of its limits.

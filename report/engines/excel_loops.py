@@ -50,10 +50,6 @@ def passes_of(sheet: Sheet) -> dict[str, tuple[str, str, int]]:
 def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
     """The passes of a sheet's loops as columns with formulas.
 
-    Parameters
-    ----------
-    sheet : Sheet
-
     Returns
     -------
     tuple of Column

@@ -31,69 +31,47 @@ _REAL = Symbol("_", real=True)
 
 @dataclass(frozen=True)
 class Auxiliary:
-    """One quantity on the way to a root.
-
-    Parameters
-    ----------
-    name : str
-        The column's name, a dot and its own.
-    title, meaning : str
-        For the reader.
-    part : Part
-        Of the plan.
-    step : int
-        Which step it belongs to, from 1; 0 before the first.
-    alone : bool
-        Whether it is only there where there is one root.
-    residual : bool
-        Whether it is a difference that tends to zero, which must not be rounded to it.
-    """
+    """One quantity on the way to a root."""
 
     name: str
+    """The column's name, a dot and its own."""
     title: str
     meaning: str
+    """`title` and `meaning`: for the reader."""
     part: Part
+    """Of the plan."""
     step: int = 0
+    """Which step it belongs to, from 1; 0 before the first."""
     alone: bool = False
+    """Whether it is only there where there is one root."""
     residual: bool = False
+    """Whether it is a difference that tends to zero, which must not be rounded to it."""
 
 
 @dataclass(frozen=True)
 class Unrolled:
-    """A root as cells.
-
-    Parameters
-    ----------
-    node : RootNode
-    plan : Plan
-        What its cells are made of.
-    check : Leaf
-        The cell that says whether all precedents have values, and the first error if not.
-    cells : tuple of Auxiliary
-        In order of evaluation.
-    number : Leaf
-        How many roots there are; no number where the form has no sign.
-    issued, counted : Leaf or None
-        Where the number of roots is not certified for all inputs: the cell that says whether the inputs are
-        those of the report as issued (1 or 0), and the one that holds how many roots there are for those, -1
-        where that is not certain.
-    known, settled : Boolean
-        Whether the form had a value at the last step, and whether that step was so small that the next
-        one would not show.
-    value : Expr
-        The column's value, where there is one root.
-    """
+    """A root as cells."""
 
     node: RootNode
     plan: Plan
+    """What its cells are made of."""
     check: Leaf
+    """The cell that says whether all precedents have values, and the first error if not."""
     cells: tuple[Auxiliary, ...]
+    """In order of evaluation."""
     number: Leaf
+    """How many roots there are; no number where the form has no sign."""
     known: Boolean
     settled: Boolean
+    """`known` and `settled`: whether the form had a value at the last step, and whether that step was so
+    small that the next one would not show."""
     value: Expr
+    """The column's value, where there is one root."""
     issued: Leaf | None = None
     counted: Leaf | None = None
+    """`issued` and `counted`: where the number of roots is not certified for all inputs: the cell that says
+    whether the inputs are those of the report as issued (1 or 0), and the one that holds how many roots there
+    are for those, -1 where that is not certain."""
 
     @property
     def column(self) -> Column:
@@ -104,14 +82,8 @@ class Unrolled:
 def unroll(plan: Plan, node: RootNode, certified: bool = True) -> Unrolled:
     """Lay the solver of a root out as cells.
 
-    Parameters
-    ----------
-    plan : Plan
-    node : RootNode
-        Of the plan.
-    certified : bool
-        Whether the number of its roots follows from signs for all inputs. No formula could count them
-        otherwise: the workbook then keeps to the inputs for which they were counted.
+    `node`: of the plan. `certified`: whether the number of its roots follows from signs for all inputs. No
+    formula could count them otherwise: the workbook then keeps to the inputs for which they were counted.
     """
     return _Unrolling(plan, node, certified).run()
 

@@ -31,13 +31,8 @@ def filled(
 ) -> Iterator[CellBlock]:
     """The blocks of a grid with what they show.
 
-    Parameters
-    ----------
-    blocks : iterable of CellBlock
-    roots : iterable of mapping
-        From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
-    values : Values
-        All columns, computed, without a batch.
+    `roots`: from :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`. `values`: all columns,
+    computed, without a batch.
     """
     found = {name: cells for root in roots for name, cells in auxiliary_values(values, root).items()}
     for block in blocks:
@@ -78,11 +73,7 @@ def _literal(value: float | str | None) -> str:
 def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple[float | str, ...]]:
     """The values of every cell of an unrolled root, by name; an empty text where there is none.
 
-    Parameters
-    ----------
-    values : Values
-    root : mapping
-        From :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
+    `root`: from :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`.
     """
     column, sheet = values.sheet[root["column"]], values.sheet
     named, rows = precedents(sheet, values.layouts, column), len(values.value[column.name])

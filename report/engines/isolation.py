@@ -39,18 +39,12 @@ class Doubtful(Exception):
 
 @dataclass
 class Isolated:
-    """The roots of every row, each between two points where the equation certainly has a sign.
-
-    Parameters
-    ----------
-    brackets : list of tuple (left, right, sign at the right end), one list a row
-        Increasing.
-    undecided : mapping of row to (low, high)
-        The part of the interval in which the roots of a row could not be counted.
-    """
+    """The roots of every row, each between two points where the equation certainly has a sign."""
 
     brackets: list[list[tuple[float, float, float]]]
+    """Increasing."""
     undecided: dict[int, tuple[float, float]] = field(default_factory=dict)
+    """By row; the part of the interval in which the roots of a row could not be counted."""
 
     def doubt(self, row: int, low: float, high: float) -> None:
         """Leave a row undecided because of a part of its interval."""

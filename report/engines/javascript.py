@@ -309,11 +309,7 @@ def _axis(axis: Axis, sheet: Sheet) -> str:
 def program(sheet: Sheet, constants: Mapping[str, float] | None = None) -> str:
     """The sheet as a JavaScript object literal, for ``evaluateSheet`` of the runtime.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    constants : mapping of column name to float
-        Given scalars that are no input of the user's.
+    `constants` (mapping of column name to float): given scalars that are no input of the user's.
     """
     plan, columns = lowered(sheet), []
     passes = [each for n in plan.nodes for each in (n.body if isinstance(n, LoopNode) else (n,))]

@@ -121,14 +121,8 @@ def enclose(
 ) -> str:
     """A function of the row and an interval of the unknown: the form, and its slope if it has one all over.
 
-    Parameters
-    ----------
-    form, steepness : Expr
-    known : Boolean
-    plain : callable
-        Puts what is printed for them in the place of cells, and the names that it gives them in that of sums.
-    terms : callable
-        Of a sum, the axis and its terms, printed as those of the row ``q``.
+    `plain`: puts what is printed for them in the place of cells, and the names that it gives them in that of
+    sums. `terms`: of a sum, the axis and its terms, printed as those of the row ``q``.
     """
     found: dict[Expr, Symbol] = {}
     bodies = [plain(each, found) for each in (form, steepness)]

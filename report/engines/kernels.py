@@ -51,25 +51,17 @@ def function_of(source: str, names: Mapping[str, Any]) -> Any:
 
 @dataclass(frozen=True)
 class Kernel:
-    """One printed function.
-
-    Parameters
-    ----------
-    arguments : tuple of str
-        What it is called with, in order.
-    totals : tuple of str
-        The axes it takes something over: after its arguments, it is called with what does
-        that for each, a :class:`~loopsheet.report.engines.numpy_rows.Kept`.
-    source : str
-        Its text.
-    functions : module
-        What it calls: :data:`SAME`, or NumPy.
-    """
+    """One printed function."""
 
     arguments: tuple[str, ...]
+    """What it is called with, in order."""
     totals: tuple[str, ...]
+    """The axes it takes something over: after its arguments, it is called with what does that for each, a
+    :class:`~loopsheet.report.engines.numpy_rows.Kept`."""
     source: str
+    """Its text."""
     functions: Any = field(default=SAME, repr=False)
+    """What it calls: :data:`SAME`, or NumPy."""
 
     @cached_property
     def run(self) -> Function:
@@ -90,16 +82,11 @@ class Kernel:
 
 @dataclass(frozen=True)
 class Enclosing(Kernel):
-    """What intervals are put into.
-
-    Parameters
-    ----------
-    reach : Kernel or None
-        What the exponents are at most, for the largest sizes of all that they name, where the unknown stands
-        in nothing but sums of exponentials over one axis: each of their terms rises, or falls, with it.
-    """
+    """What intervals are put into."""
 
     reach: Kernel | None = None
+    """What the exponents are at most, for the largest sizes of all that they name, where the unknown stands
+    in nothing but sums of exponentials over one axis: each of their terms rises, or falls, with it."""
 
     @property
     def plain(self) -> dict[str, Any]:

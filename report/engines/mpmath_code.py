@@ -17,7 +17,6 @@ def source_of(
 
     Parameters
     ----------
-    symbols : sequence of Symbol
     bodies : sequence of Basic
         What it returns.
     common : bool

@@ -39,30 +39,21 @@ WIDEST = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """The function of a sheet, and the parts that it asks for.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    known : collection of str
-        Columns that are computed already.
-    function : callable
-        Called with a run.
-    roots : mapping of column name to RootProgram
-    loops : mapping of column name to LoopProgram
-    source : str
-        The text of all of it.
-    functions : module
-        What computes exponentials, logarithms and powers.
-    """
+    """The function of a sheet, and the parts that it asks for."""
 
     sheet: Sheet
     known: Collection[str]
+    """Columns that are computed already."""
     function: Function
+    """Called with a run."""
     roots: Mapping[str, RootProgram]
+    """By column name."""
     loops: Mapping[str, LoopProgram]
+    """By column name."""
     source: str
+    """The text of all of it."""
     functions: Any = SAME
+    """What computes exponentials, logarithms and powers."""
     _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -73,7 +64,6 @@ class Program:
 
         Parameters
         ----------
-        sheet : Sheet
         known : collection of str
             Columns that are computed already.
         functions : module
@@ -109,13 +99,8 @@ class Program:
     ) -> Program:
         """The program of printed functions.
 
-        Parameters
-        ----------
-        sheet : Sheet
-        texts : mapping
-            From :func:`~loopsheet.report.engines.numpy_texts.program_texts`.
-        functions, known
-            As for :meth:`of`.
+        `texts`: from :func:`~loopsheet.report.engines.numpy_texts.program_texts`. `functions` and `known`: as
+        for :meth:`of`.
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         loops = {name: LoopProgram.of(loop, functions) for name, loop in texts["loops"].items()}
@@ -543,7 +528,6 @@ def evaluate(
 
     Parameters
     ----------
-    sheet : Sheet
     labels : mapping of axis name to sequence of int
         Row numbers of the axes that come with the data.
     data : mapping of column name to float array (..., rows) or float

@@ -105,11 +105,8 @@ class Beside:
     def column(self, name: str, row: int, batch: Mapping[str, Array]) -> tuple[Array, Mask]:
         """A row of a column for a batch, and of which of its elements it is known (batch,).
 
-        Parameters
-        ----------
-        name, row
-        batch : mapping of column name to float array (batch, rows)
-            Given columns that are others than in the point; best in memory row by row.
+        `batch` (mapping of column name to float array (batch, rows)): given columns that are others than in
+        the point; best in memory row by row.
         """
         (size,) = {len(each) for each in batch.values()}
         found, known = np.empty(size), np.empty(size, dtype=bool)

@@ -104,7 +104,6 @@ def write(
 
     Parameters
     ----------
-    arguments : sequence of Symbol
     totals : sequence of str
         As for :class:`Kernel`.
     expressions : sequence of Expr
@@ -151,10 +150,7 @@ def _opposite(expressions: Sequence[Any]) -> dict[Expr, Expr]:
 def kernel(expressions: Sequence[Basic]) -> Kernel:
     """Print expressions in plain symbols as one function of these, sorted by name.
 
-    Parameters
-    ----------
-    expressions : sequence of Basic
-        What the function returns, in order.
+    `expressions`: what the function returns, in order.
     """
     totals = taken_over(expressions)
     axes = {Symbol(axis) for axis in totals}

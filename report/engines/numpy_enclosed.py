@@ -35,35 +35,24 @@ _BLOCK = 1 << 18
 
 @dataclass(frozen=True)
 class EnclosedRows:
-    """The cells that a root names, for intervals of the unknown of some rows.
-
-    Parameters
-    ----------
-    kernel : Enclosing
-        The root's, from :func:`~loopsheet.report.engines.certified.enclosing`.
-    cells : mapping of name to Intervals
-        Its arguments, but the unknown.
-    terms_of : collection of str
-        Those of them whose rows are the terms of sums.
-    kept : mapping of axis name to boolean array (..., rows)
-        For the axes that it sums over, the rows that have values.
-    shape : tuple of int
-        Of the root's rows, batch first.
-    moving : bool
-        Whether cells are intervals: halving the unknown's then settles nothing around a point where nothing
-        is certain, and the row is given up.
-    by_points : bool
-        Whether terms are computed in doubles, at the ends of parts
-        (:class:`~loopsheet.report.engines.numpy_rows.KeptBetween`).
-    """
+    """The cells that a root names, for intervals of the unknown of some rows."""
 
     kernel: Enclosing
+    """The root's, from :func:`~loopsheet.report.engines.certified.enclosing`."""
     cells: Mapping[str, Intervals]
+    """By name; its arguments, but the unknown."""
     terms_of: Collection[str]
+    """Those of them whose rows are the terms of sums."""
     kept: Mapping[str, Mask]
+    """Of shape (..., rows), by axis name; for the axes that it sums over, the rows that have values."""
     shape: tuple[int, ...]
+    """Of the root's rows, batch first."""
     moving: bool = False
+    """Whether cells are intervals: halving the unknown's then settles nothing around a point where nothing is
+    certain, and the row is given up."""
     by_points: bool = False
+    """Whether terms are computed in doubles, at the ends of parts
+    (:class:`~loopsheet.report.engines.numpy_rows.KeptBetween`)."""
 
     def isolate(
         self, asked: NDArray[np.intp], low: Array, high: Array, signs: tuple[Array, Array]

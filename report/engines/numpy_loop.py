@@ -27,23 +27,16 @@ STILL = 2.0**-51
 
 @dataclass(frozen=True)
 class LoopProgram:
-    """Everything a loop needs, printed.
-
-    Parameters
-    ----------
-    iterated, formulas : tuple of str
-        Its columns, in the order of a pass: formulas first.
-    start, once : callable
-        The first values of the iterated ones; a pass. They are called with a run.
-    source : str
-        The text of both.
-    """
+    """Everything a loop needs, printed."""
 
     iterated: tuple[str, ...]
     formulas: tuple[str, ...]
+    """`iterated` and `formulas`: its columns, in the order of a pass: formulas first."""
     start: Function
     once: Function
+    """`start` and `once`: the first values of the iterated ones; a pass. They are called with a run."""
     source: str
+    """The text of both."""
 
     @classmethod
     def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> Self:

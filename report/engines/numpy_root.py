@@ -29,25 +29,17 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class FoundRoots:
-    """The unknown of every row and how many there are.
-
-    Parameters
-    ----------
-    value : float array
-        The cell's value; NaN where there is not one root.
-    status : integer array
-        OK, NOROOT, TWOROOTS, UNDECIDED; DOMAIN where the equation has no sign.
-    several : mapping of position to tuple of float
-        For ambiguous rows, the values of all roots, increasing; for undecided ones, the ends of the part of
-        the unknown's interval where it was not decided.
-    unknown : float array
-        Where the equation vanishes; anything where there is not one root.
-    """
+    """The unknown of every row and how many there are."""
 
     value: Array
+    """The cell's value; NaN where there is not one root."""
     status: NDArray[np.uint8]
+    """OK, NOROOT, TWOROOTS, UNDECIDED; DOMAIN where the equation has no sign."""
     several: Mapping[int, tuple[float, ...]]
+    """By position; for ambiguous rows, the values of all roots, increasing; for undecided ones, the ends of
+    the part of the unknown's interval where it was not decided."""
     unknown: Array
+    """Where the equation vanishes; anything where there is not one root."""
 
 
 _BODIES = ("at", "newton", "step", "check", "value")
@@ -56,63 +48,44 @@ _BODIES = ("at", "newton", "step", "check", "value")
 
 @dataclass(frozen=True)
 class RootProgram:
-    """Everything a root needs, printed.
-
-    Parameters
-    ----------
-    arguments : mapping of name to str or None
-        What :meth:`solve` is called with: cells, totals and sizes that the root names, in order, each with
-        the axis whose rows it has.
-    terms_of : frozenset of str
-        Those of them whose rows are the terms of its sums.
-    told : tuple of bool
-        Whether the rule gives the sign at the lower end, and at the upper one.
-    turning : int
-        How many turning points it has.
-    steps : int
-        How many steps a row takes at most before it is bisected.
-    fixed : Kernel
-        What does not change with the unknown: low, high, start, the sign at each end (a number only where
-        the rule gives it), the turning points, then the constants of the functions below.
-    constants : Kernel
-        Of these, the constants alone.
-    totals : tuple of str
-        The axes that these sum over; they are called with the unknown, the constants and the totals.
-    at : callable
-        The equation.
-    newton, step : callable
-        The equation, and what is subtracted from the unknown: by Newton, and of fourth order where no
-        derivative is a sum.
-    check : callable
-        The equation, and the same with nothing cancelling.
-    value : callable
-        The cell's value.
-    source : str
-        The text of all of them.
-    enclosing : Enclosing or None
-        What intervals are put into (:func:`~loopsheet.report.engines.certified.enclosing`), where the number
-        of roots is not certified for all inputs at once.
-    counted : bool
-        Whether :meth:`solve` counts the roots by these intervals before it takes one. It takes long, and a
-        search that proves nothing does without until it has found something.
-    """
+    """Everything a root needs, printed."""
 
     arguments: Mapping[str, str | None]
+    """By name; what :meth:`solve` is called with: cells, totals and sizes that the root names, in order, each
+    with the axis whose rows it has."""
     terms_of: frozenset[str]
+    """Those of them whose rows are the terms of its sums."""
     told: tuple[bool, bool]
+    """Whether the rule gives the sign at the lower end, and at the upper one."""
     turning: int
+    """How many turning points it has."""
     steps: int
+    """How many steps a row takes at most before it is bisected."""
     fixed: Kernel
+    """What does not change with the unknown: low, high, start, the sign at each end (a number only where the
+    rule gives it), the turning points, then the constants of the functions below."""
     constants: Kernel
+    """Of these, the constants alone."""
     totals: tuple[str, ...]
+    """The axes that these sum over; they are called with the unknown, the constants and the totals."""
     at: Function
+    """The equation."""
     newton: Function
     step: Function
+    """`newton` and `step`: the equation, and what is subtracted from the unknown: by Newton, and of fourth
+    order where no derivative is a sum."""
     check: Function
+    """The equation, and the same with nothing cancelling."""
     value: Function
+    """The cell's value."""
     source: str
+    """The text of all of them."""
     enclosing: Enclosing | None = None
+    """What intervals are put into (:func:`~loopsheet.report.engines.certified.enclosing`), where the number
+    of roots is not certified for all inputs at once."""
     counted: bool = True
+    """Whether :meth:`solve` counts the roots by these intervals before it takes one. It takes long, and a
+    search that proves nothing does without until it has found something."""
 
     @classmethod
     def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> RootProgram:

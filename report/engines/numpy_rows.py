@@ -25,14 +25,10 @@ def chosen(conditions: Sequence[Any], values: Sequence[Any], default: Any) -> An
 
 @dataclass(frozen=True)
 class Kept:
-    """The rows of an axis, and which of them have values; those that have none may hold anything.
-
-    Parameters
-    ----------
-    mask : boolean array (..., rows)
-    """
+    """The rows of an axis, and which of them have values; those that have none may hold anything."""
 
     mask: NDArray[np.bool_]
+    """Of shape (..., rows)."""
 
     def total(self, terms: Any) -> Any:
         """The sum of the kept rows (..., 1); NumPy adds pairwise along the last dimension."""
@@ -71,18 +67,13 @@ class Kept:
 
 @dataclass(frozen=True)
 class KeptIntervals:
-    """The same for a function that runs on intervals.
-
-    Parameters
-    ----------
-    mask : boolean array (..., rows)
-    sure : boolean array (..., rows), optional
-        Which of the kept rows have values whatever lies in the intervals; of a sum over others nothing is
-        known.
-    """
+    """The same for a function that runs on intervals."""
 
     mask: NDArray[np.bool_]
+    """Of shape (..., rows)."""
     sure: NDArray[np.bool_] | None = None
+    """Of shape (..., rows); which of the kept rows have values whatever lies in the intervals; of a sum over
+    others nothing is known."""
 
     def total(self, terms: Any) -> Intervals:
         """The sum of the kept rows (..., 1)."""
@@ -115,26 +106,18 @@ class KeptIntervals:
 
 @dataclass(frozen=True)
 class KeptBetween:
-    """Sums of terms that rise or fall, each by itself, between points at which they are computed in doubles.
-
-    Parameters
-    ----------
-    mask : boolean array (..., rows)
-    low, high : integer arrays (parts,)
-        The numbers of the points at the ends of each part.
-    """
+    """Sums of terms that each rise or fall, between points at which they are computed in doubles."""
 
     mask: NDArray[np.bool_]
+    """Of shape (..., rows)."""
     low: NDArray[np.intp]
     high: NDArray[np.intp]
+    """`low` and `high`: of shape (parts,); the numbers of the points at the ends of each part."""
 
     def total(self, terms: Any) -> Intervals:
         """The sum of the kept rows (parts, 1): each term lies between what it is at both ends.
 
-        Parameters
-        ----------
-        terms : float array (points, rows)
-            Each with an error of at most 2^-31 of its size.
+        `terms` (float array (points, rows)): each with an error of at most 2^-31 of its size.
         """
         every = np.where(self.mask, terms, 0.0)
         thin, sizes = (each.sum(axis=-1, keepdims=True) for each in (every, np.abs(every)))
@@ -154,21 +137,14 @@ class KeptBetween:
 
 @dataclass(frozen=True)
 class InGroups:
-    """Rows of which those of a group stand beside one another: what is taken of each group (..., groups).
-
-    Parameters
-    ----------
-    groups : tuple of Kept or KeptIntervals
-        The rows of each.
-    where : tuple of slice
-        Where these stand.
-    size : int
-        How many rows there are.
-    """
+    """Rows of which those of a group stand beside one another: what is taken of each group (..., groups)."""
 
     groups: tuple[Kept | KeptIntervals, ...]
+    """The rows of each."""
     where: tuple[slice, ...]
+    """Where these stand."""
     size: int
+    """How many rows there are."""
 
     def total(self, terms: Any) -> Any:
         """The sums of the kept rows."""

@@ -25,7 +25,6 @@ def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]], iterated: Ite
 
     Parameters
     ----------
-    plan : Plan
     roots : mapping of column name to iterable of str
         What each root is called with.
     iterated : iterable of Column

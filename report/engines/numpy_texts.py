@@ -22,7 +22,6 @@ def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
 
     Parameters
     ----------
-    sheet : Sheet
     plan : Plan
         What computes something of it.
 
@@ -39,14 +38,7 @@ def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
 
 
 def loop_texts(plan: Plan, node: LoopNode) -> dict[str, Any]:
-    """The functions of a loop, printed: what it starts from, and a pass.
-
-    Parameters
-    ----------
-    plan : Plan
-    node : LoopNode
-        Of the plan.
-    """
+    """The functions of a loop, printed: what it starts from, and a pass."""
     start = sheet_function(Plan(node.starts, plan.leaves), {})
     once = sheet_function(Plan(node.body, plan.leaves), {}, node.columns)
     formulas = dict.fromkeys(each.column.name for each in node.body if isinstance(each, Map))
@@ -60,16 +52,7 @@ def loop_texts(plan: Plan, node: LoopNode) -> dict[str, Any]:
 
 
 def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
-    """The functions of one root, printed: data of which :class:`RootProgram` is made.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    plan : Plan
-        Of the sheet.
-    node : RootNode
-        Of the plan.
-    """
+    """The functions of one root, printed: data of which :class:`RootProgram` is made."""
     enclosed = None if certified(sheet, node.column) else enclosing(sheet, plan, node)
     if enclosed is not None:
         node = replace(node, turning=())  # what nobody proved is not used

@@ -35,7 +35,6 @@ def step(function: Expr, unknown: Symbol) -> tuple[dict[Symbol, Expr], Expr]:
     ----------
     function : Expr
         What must vanish, in plain symbols.
-    unknown : Symbol
 
     Returns
     -------
@@ -59,13 +58,7 @@ def hoist(expression: Expr, unknown: Symbol, constants: dict[Expr, Symbol]) -> E
 
     A power whose base is such becomes an exponential: the logarithm is then taken once.
 
-    Parameters
-    ----------
-    expression : Expr
-        In plain symbols.
-    unknown : Symbol
-    constants : dict of Expr to Symbol
-        The constants so far; new ones are added.
+    `expression`: in plain symbols. `constants`: the constants so far; new ones are added.
     """
 
     def constant(part: Expr) -> Expr:

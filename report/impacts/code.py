@@ -55,66 +55,43 @@ BY_RATIO = ((zeta, damping_ratio.members[-1]), *HERTZ)
 
 @dataclass(frozen=True)
 class Typed:
-    """A number that a user types into a code.
-
-    Parameters
-    ----------
-    word : str
-        What the code calls it.
-    symbol : Symbol
-        What it is in the law, in SI.
-    unit : str
-        Of the number that is typed.
-    meaning : str
-    value : Expr, optional
-        What it is, where it is not solved for: in terms of what is known of the impact (:data:`alpha`,
-        :data:`depth`, :data:`nu`, :data:`R`, :data:`e`, the mass).
-    scale : Expr
-        What turns SI into the unit, in terms of the law's own symbols.
-    """
+    """A number that a user types into a code."""
 
     word: str
+    """What the code calls it."""
     symbol: Symbol
+    """What it is in the law, in SI."""
     unit: str
+    """Of the number that is typed."""
     meaning: str
     value: Expr | None = None
+    """What it is, where it is not solved for: in terms of what is known of the impact (:data:`alpha`,
+    :data:`depth`, :data:`nu`, :data:`R`, :data:`e`, the mass)."""
     scale: Expr = ONE
+    """What turns SI into the unit, in terms of the law's own symbols."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactFormula:
-    """A force of a contact, with the numbers that a user types into it.
-
-    Parameters
-    ----------
-    name : str
-        The word for it on the command line.
-    title : str
-        Program and model.
-    version : str
-        Of what was read, if it has any.
-    sources : tuple of str
-        Where the formula stands.
-    law : ForceLaw
-        In terms of what is typed.
-    typed : tuple of Typed
-    by_hertz : Expr, optional
-        The stiffness for Hertz's contact of a given modulus, if the law is Hertz's without its damping.
-    snippet : str
-        How it is written in an input of the code; {word} is what is typed.
-    notes : tuple of str
-        What a user has to know besides, a sentence each.
-    """
+    """A force of a contact, with the numbers that a user types into it."""
 
     name: str
+    """The word for it on the command line."""
     title: str
+    """Program and model."""
     version: str = ""
+    """Of what was read, if it has any."""
     sources: tuple[str, ...]
+    """Where the formula stands."""
     law: ForceLaw
+    """In terms of what is typed."""
     typed: tuple[Typed, ...]
     by_hertz: Expr | None = None
+    """The stiffness for Hertz's contact of a given modulus, if the law is Hertz's without its damping."""
     snippet: str = ""
+    """How it is written in an input of the code; {word} is what is typed."""
     notes: tuple[str, ...] = ()
+    """What a user has to know besides, a sentence each."""
 
     @property
     def solves(self) -> bool:
@@ -136,19 +113,12 @@ class ContactFormula:
 
 @dataclass(frozen=True, kw_only=True)
 class SimulationCode(ContactFormula):
-    """That of a simulation code, of which two numbers are solved for.
-
-    Parameters
-    ----------
-    stiffness, damping : Symbol
-        Which of them: by the depth, and by the restitution.
-    damping_unit : Expr
-        A size of the damping that is neither weak nor strong, from speed, mass and depth.
-    damping_ends : tuple of float
-        What it may be, in that unit: a typed restitution and a share are below 1.
-    """
+    """That of a simulation code, of which two numbers are solved for."""
 
     stiffness: Symbol
     damping: Symbol
+    """`stiffness` and `damping`: which of them: by the depth, and by the restitution."""
     damping_unit: Expr = ONE
+    """A size of the damping that is neither weak nor strong, from speed, mass and depth."""
     damping_ends: tuple[float, float] = (1e-3, 1 - 1e-6)
+    """What it may be, in that unit: a typed restitution and a share are below 1."""

@@ -53,13 +53,7 @@ def _plain(of: Expr, x_m: Symbol) -> Expr:
 def formula(model: ContactModel, numbers: Mapping[Symbol, float], words: Vocabulary) -> ContactFormula:
     """A model as a formula with nothing to solve for; a restitution that it is told is that of the impact.
 
-    Parameters
-    ----------
-    model : ContactModel
-    numbers : mapping of Symbol to float
-        What its constants are, in SI; NaN where one has no value.
-    words : Vocabulary
-        Of these symbols.
+    `numbers`: what its constants are, in SI; NaN where one has no value. `words`: of these symbols.
     """
     law = law_of(model, numbers)
     typed = []

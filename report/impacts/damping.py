@@ -1,4 +1,4 @@
-"""Numbers of the damping family: what a damping number returns, and the one that returns what is wanted.
+"""Numbers of the damping family: what a damping number returns, and the one by an author's formula.
 
 All is printed from :mod:`~loopsheet.derivations.contact.damping` and evaluated with 40 digits, because the
 equations cancel where the damping is weak.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import mpmath
 from scipy.optimize import brentq
@@ -16,17 +16,9 @@ from sympy import Expr, Symbol, lambdify
 
 from ...derivations.contact import damping as model
 
-__all__ = ["Closed", "closed_form", "number_by", "returned", "wanted"]
+__all__ = ["number_by", "returned"]
 
 _DIGITS = 40
-
-
-class Closed(NamedTuple):
-    """An impact of the family in closed form: restitution, greatest approach in m and force in N."""
-
-    e: float
-    x_m: float
-    F_m: float
 
 
 @lru_cache
@@ -63,37 +55,11 @@ def returned(c: float) -> float:
     return _zero(lambda e: _value(residual, c=c, e_o=e), 0.0, min(1.0, 1 / c) * (1 - margin))
 
 
-def wanted(e: float) -> float:
-    """The damping number with which the family returns a restitution, by (L106).
-
-    Parameters
-    ----------
-    e : float
-        From 0.03 to below 1: for less the damping number is 1/e to all digits of a double.
-
-    Raises
-    ------
-    ValueError
-        It is outside of that.
-
-    Examples
-    --------
-    >>> f"{wanted(0.53):.6f} {returned(wanted(0.53)):.12f}"
-    '1.279600 0.530000000000'
-    """
-    if not 0.03 <= e < 1:
-        raise ValueError(f"no damping number can be told for a restitution of {e}: from 0.03 to below 1")
-    (residual,) = model.returned.residuals
-    # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
-    return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - 1e-15) / e)
-
-
 def number_by(author: str, e: float, n: float) -> float:
     """The damping number by an author's formula, one of :data:`~...damping.MEMBERS`.
 
     Parameters
     ----------
-    author : str
     e, n : float
         The restitution that is wanted, and the exponent of the force.
 
@@ -106,22 +72,3 @@ def number_by(author: str, e: float, n: float) -> float:
     if value.has(model.J):
         value = value.xreplace({model.J: model.mean_flores.value})
     return float(value.subs({model.e: e, model.n: n}).evalf(20))
-
-
-def closed_form(K: float, n: float, c: float, mass: float, speed: float) -> Closed:
-    """Restitution, greatest approach and greatest force of the family, by (L105) to (L108).
-
-    Parameters
-    ----------
-    K, n, c : float
-        Stiffness in N/m^n, exponent, damping number.
-    mass, speed : float
-        The reduced mass in kg, the impact speed in m/s.
-    """
-    given = {"K": K, "n": n, "c": c, "m_red": mass, "v_0": speed}
-    (residual,) = model.peak_speed.residuals
-    u = _zero(lambda u: _value(residual, u_F=u, **given), 0.0, 1.0)
-    power = _value(model.peak_approach.value, u_F=u, **given)
-    peak = float(power ** (1 / (mpmath.mpf(n) + 1)))
-    force = _value(model.family.value, x=peak, xdot=u * speed, **given)
-    return Closed(returned(c), float(_value(model.approach.value, **given)), float(force))

@@ -30,31 +30,23 @@ class Drop:
 
 @dataclass(frozen=True)
 class Drops:
-    """Measured impacts of one ball on one target, in SI.
-
-    Parameters
-    ----------
-    mass : float
-        The reduced mass.
-    v, e, x_p : tuple of float
-        Impact speed, restitution and imprint of each test; NaN where one is missing.
-    alpha, C, beta : float
-        The identified law (3): its loading curve and the exponent of unloading; NaN where there is none.
-    radius : float
-        Of the ball; NaN if it is not known.
-    nu : float
-        Poisson's ratio of the ball; NaN if it is not known.
-    """
+    """Measured impacts of one ball on one target, in SI."""
 
     mass: float
+    """The reduced mass."""
     v: tuple[float, ...]
     e: tuple[float, ...]
     x_p: tuple[float, ...]
+    """`v`, `e` and `x_p`: impact speed, restitution and imprint of each test; NaN where one is missing."""
     alpha: float = math.nan
     C: float = math.nan
     beta: float = math.nan
+    """`alpha`, `C` and `beta`: the identified law (3): its loading curve and the exponent of unloading; NaN
+    where there is none."""
     radius: float = math.nan
+    """Of the ball; NaN if it is not known."""
     nu: float = math.nan
+    """Poisson's ratio of the ball; NaN if it is not known."""
 
     @cached_property
     def tests(self) -> tuple[Drop, ...]:

@@ -19,31 +19,21 @@ x_max = Symbol("x_max", positive=True)
 
 @dataclass(frozen=True)
 class ForceLaw:
-    """A force that is not a function of the approach alone.
-
-    Parameters
-    ----------
-    name : str
-        What it is called in a sentence.
-    loading : Expr
-        The force in N while the approach grows, in terms of :data:`x`, :data:`rate`, the impact speed
-        :data:`v_0`, the reduced mass :data:`m_red` and constants; zero or more there.
-    unloading : Expr, optional
-        The force after the turning point, which may hold :data:`x_max` too; left out, as in loading.
-    imprint : Expr
-        The approach at which the bodies part, in terms of :data:`x_max` and constants.
-    pulls : bool
-        Whether a negative force acts; else there is none where the law says less than zero.
-    where : tuple of (Symbol, Expr)
-        What some of its symbols stand for; each may name those after it.
-    """
+    """A force that is not a function of the approach alone."""
 
     name: str
+    """What it is called in a sentence."""
     loading: Expr
+    """The force in N while the approach grows, in terms of :data:`x`, :data:`rate`, the impact speed
+    :data:`v_0`, the reduced mass :data:`m_red` and constants; zero or more there."""
     unloading: Expr | None = None
+    """The force after the turning point, which may hold :data:`x_max` too; left out, as in loading."""
     imprint: Expr = field(default=Integer(0))
+    """The approach at which the bodies part, in terms of :data:`x_max` and constants."""
     pulls: bool = False
+    """Whether a negative force acts; else there is none where the law says less than zero."""
     where: tuple[tuple[Symbol, Expr], ...] = ()
+    """What some of its symbols stand for; each may name those after it."""
 
     @property
     def back(self) -> Expr:

@@ -39,38 +39,28 @@ CORNERS = 8
 
 @dataclass(frozen=True)
 class Impact:
-    """What a simulated impact shows, in SI.
-
-    Parameters
-    ----------
-    e : float
-        The coefficient of restitution that is returned.
-    x_m, F_m : float
-        The greatest approach and the greatest force, which need not come together.
-    x_p : float
-        The approach at which the bodies part.
-    duration, compression : float
-        Until the force is zero for good, and until the greatest approach.
-    loss : float
-        The area of the loop: the work of the force over the whole impact.
-    time, approach, speed, force : array of shape (steps,)
-        The course of it, where the integration stepped.
-    failure : str
-        Why there is nothing of all this; empty, if there is.
-    """
+    """What a simulated impact shows, in SI."""
 
     e: float = math.nan
+    """The coefficient of restitution that is returned."""
     x_m: float = math.nan
     F_m: float = math.nan
+    """`x_m` and `F_m`: the greatest approach and the greatest force, which need not come together."""
     x_p: float = math.nan
+    """The approach at which the bodies part."""
     duration: float = math.nan
     compression: float = math.nan
+    """`duration` and `compression`: until the force is zero for good, and until the greatest approach."""
     loss: float = math.nan
+    """The area of the loop: the work of the force over the whole impact."""
     time: NDArray[np.float64] | None = None
     approach: NDArray[np.float64] | None = None
     speed: NDArray[np.float64] | None = None
     force: NDArray[np.float64] | None = None
+    """`time`, `approach`, `speed` and `force`: of shape (steps,); the course of it, where the integration
+    stepped."""
     failure: str = ""
+    """Why there is nothing of all this; empty, if there is."""
 
 
 class _Stopped(Exception):
@@ -82,7 +72,6 @@ def simulate(law: ForceLaw, constants: Mapping[Symbol, float], mass: float, spee
 
     Parameters
     ----------
-    law : ForceLaw
     constants : mapping of Symbol to float
         Of the law, in SI.
     mass : float

@@ -28,29 +28,19 @@ _LINE = 107
 
 @dataclass(frozen=True)
 class WrittenLaw:
-    """A law that can be written down.
-
-    Parameters
-    ----------
-    law : ForceLaw
-        With all numbers in it.
-    says : str
-        What it is, in a line.
-    beyond : str
-        What it does beyond the measured speeds.
-    drops : Drops
-    drop : Drop
-        The impact that a table is of.
-    x_m : float
-        Its greatest approach, in m.
-    """
+    """A law that can be written down."""
 
     law: ForceLaw
+    """With all numbers in it."""
     says: str
+    """What it is, in a line."""
     beyond: str
+    """What it does beyond the measured speeds."""
     drops: Drops
     drop: Drop
+    """The impact that a table is of."""
     x_m: float
+    """Its greatest approach, in m."""
 
 
 def identified(drops: Drops, drop: Drop) -> WrittenLaw:

@@ -24,24 +24,16 @@ _PURE = ("k", "dof", "r")
 
 @dataclass(frozen=True)
 class About:
-    """What is told of a cell.
-
-    Parameters
-    ----------
-    kind : str
-        ``u``, ``u1``, ``U``, ``k``, ``dof``, ``r``, ``low`` or ``high``.
-    cell : str
-        The column of the cell.
-    other : str
-        The column whose errors contribute, or that it is correlated with; empty if there is none.
-    level : float
-        The coverage probability, where there is one.
-    """
+    """What is told of a cell."""
 
     kind: str
+    """``u``, ``u1``, ``U``, ``k``, ``dof``, ``r``, ``low`` or ``high``."""
     cell: str
+    """The column of the cell."""
     other: str = ""
+    """The column whose errors contribute, or that it is correlated with; empty if there is none."""
     level: float = 0.95
+    """The coverage probability, where there is one."""
 
     @property
     def is_width(self) -> bool:

@@ -39,24 +39,16 @@ NUMBERS = {
 
 @dataclass(frozen=True)
 class AskedCards:
-    """The cards that a folder asks for.
-
-    Parameters
-    ----------
-    codes : mapping of str to Location
-        Their codes; whether there are such, only those know who make the cards.
-    numbers : mapping of str to Printed
-        Of :data:`NUMBERS`, those that are given.
-    places : mapping of str to Location
-        Where these stand.
-    at : Location or None
-        Where the codes stand.
-    """
+    """The cards that a folder asks for."""
 
     codes: Mapping[str, Location] = field(default_factory=dict)
+    """Their codes; whether there are such, only those know who make the cards."""
     numbers: Mapping[str, Printed] = field(default_factory=dict)
+    """Of :data:`NUMBERS`, those that are given."""
     places: Mapping[str, Location] = field(default_factory=dict)
+    """Where these stand."""
     at: Location | None = None
+    """Where the codes stand."""
 
 
 def read_cards(tables: TomlTables) -> AskedCards:

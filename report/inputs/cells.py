@@ -86,11 +86,7 @@ def check_cells(
 def _of_words(said: Iterable[_Of], words: Words) -> Iterator[_Of]:
     """What is said of cells, with the rows that words stand for: ``slope[steel]``.
 
-    Parameters
-    ----------
-    said : iterable of Expectation or Limits
-    words
-        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
+    `words`: as for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """
     for each in said:
         name, word = parts(each.address) or ("", "")

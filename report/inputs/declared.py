@@ -77,7 +77,6 @@ def misnamed(
 
     Parameters
     ----------
-    workbook : Workbook
     sheet : Sheet
         Its sheet for what was given.
     narratives : mapping of str to collection of str

@@ -46,20 +46,13 @@ class OfCell(Protocol):
 
 @dataclass(frozen=True)
 class Expectation:
-    """A cell that is expected to be odd, or a test whose cells are.
-
-    Parameters
-    ----------
-    address : str
-        As it was written: ``alpha[1-2]``, ``alpha_mean``, ``test 3``.
-    reason : str
-    at : Location
-        Where it was written.
-    """
+    """A cell that is expected to be odd, or a test whose cells are."""
 
     address: str
+    """As it was written: ``alpha[1-2]``, ``alpha_mean``, ``test 3``."""
     reason: str
     at: Location
+    """Where it was written."""
     row: tuple[int, ...] | None = None
     """Which row its word stands for, where one does."""
 
@@ -114,7 +107,6 @@ def check_expected(
 
     Parameters
     ----------
-    expected : sequence of OfCell
     tests : sequence of int
         The numbers of the tests that there are.
     cells : mapping of str to (str, collection of tuple of int)

@@ -14,13 +14,8 @@ Texts = Mapping[int, Mapping[str, str]]
 def words(texts: Texts, left_out: Sequence[LeftOut], column: str) -> list[str]:
     """The words of a column in the order in which they first appear, in tests that are left out too.
 
-    Parameters
-    ----------
-    texts : mapping of int to mapping of str to str
-        The rows of the others, in the order of the table, by column.
-    left_out : sequence of LeftOut
-    column : str
-        By which the workbook groups.
+    `texts`: the rows of the others, in the order of the table, by column. `column`: by which the workbook
+    groups.
     """
     found = [row[column] for row in texts.values()]
     for each in left_out:
@@ -36,10 +31,7 @@ def rows(texts: Texts, left_out: Sequence[LeftOut]) -> dict[int, Mapping[str, st
 def groups(texts: Texts, left_out: Sequence[LeftOut], column: str) -> dict[int, int]:
     """The number of each test's word, from 1: whatever is left out, others keep theirs.
 
-    Parameters
-    ----------
-    texts, left_out, column
-        As for :func:`words`.
+    `texts`, `left_out` and `column`: as for :func:`words`.
     """
     number = {word: place for place, word in enumerate(words(texts, left_out, column), start=1)}
     return {test: number[row[column]] for test, row in rows(texts, left_out).items()}

@@ -66,90 +66,63 @@ _SOURCE = "source"
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a report folder says, checked.
-
-    Parameters
-    ----------
-    folder : Path
-        As it was given.
-    title : str
-        The title of the report; the workbook's, if none is given.
-    workbook : Workbook
-        The method.
-    parameters : dict of str to Printed
-        Those that were given and those that have a default, in the workbook's order.
-    given : frozenset of str
-        The names of those that were really given.
-    tests : tuple of int
-        The test numbers, in the order of the file.
-    measured : dict of str to tuple of Printed or None
-        One number a test for each measured column; None where the cell is empty.
-    header_units : dict of str to str
-        The unit of each measured column, as written in the header, and of the column of its uncertainties,
-        which is called ``u(x_p)``.
-    published : tuple of PublishedValue
-        The values to referee.
-    published_u : tuple of PublishedValue
-        What is published of the uncertainties of cells.
-    files : dict of str to bytes
-        The bytes of every file that was read, by its name relative to the folder.
-    free_at : dict of str to Location
-        The columns that the publication does not print, with the place that says so.
-    expected : tuple of Expectation
-        Cells and tests that are expected to be without a value or out of the ordinary, each with its reason.
-    errata : dict of (str, int) to Printed
-        Measured cells that are known to be misprinted, by column and row, as they would have to be printed.
-        Only the referee asks what would come out of them.
-    by_source : bool
-        Whether the published values are those of the workbook's own source.
-    left_out : tuple of LeftOut
-        The tests that take no part, each with its reason; all else is about the others.
-    aside : tuple of PublishedValue
-        Published values that rest on a test that is left out: they are not compared.
-    uncertainty : Stated
-        What report.toml states of the errors of whole columns, of what they share, and of correlations.
-    limits, undecided : tuple of Limits
-        Where cells have to lie; those of cells that are missing because a test is left out.
-    taken : mapping of str to Taken
-        The parameters and measured columns whose numbers were taken from other reports.
-    heads : mapping of str to str
-        The first line of the measurements as it stands, by what it names.
-    remarks : tuple of str
-        The columns of words that come along; nothing is computed from them.
-    texts : mapping of int to mapping of str to str
-        The row of each test as it stands, by column; that of one that is left out stands with it.
-    alike : tuple of Alike
-        Words by which rows belong together, and that may be others misspelt.
-    cards : AskedCards
-        For which simulation codes the report tells what to type into them.
-    """
+    """What a report folder says, checked."""
 
     folder: Path
+    """As it was given."""
     title: str
+    """The title of the report; the workbook's, if none is given."""
     workbook: Workbook
+    """The method."""
     parameters: dict[str, Printed]
+    """Those that were given and those that have a default, in the workbook's order."""
     given: frozenset[str]
+    """The names of those that were really given."""
     tests: tuple[int, ...]
+    """The test numbers, in the order of the file."""
     measured: dict[str, tuple[Printed | None, ...]]
+    """One number a test for each measured column; None where the cell is empty."""
     header_units: dict[str, str]
+    """The unit of each measured column, as written in the header, and of the column of its uncertainties,
+    which is called ``u(x_p)``."""
     published: tuple[PublishedValue, ...]
+    """The values to referee."""
     files: dict[str, bytes]
+    """The bytes of every file that was read, by its name relative to the folder."""
     free_at: dict[str, Location] = field(default_factory=dict)
+    """The columns that the publication does not print, with the place that says so."""
     expected: tuple[Expectation, ...] = ()
+    """Cells and tests that are expected to be without a value or out of the ordinary, each with its
+    reason."""
     errata: dict[tuple[str, int], Printed] = field(default_factory=dict)
+    """By (str, int); measured cells that are known to be misprinted, by column and row, as they would have to
+    be printed. Only the referee asks what would come out of them."""
     by_source: bool = False
+    """Whether the published values are those of the workbook's own source."""
     left_out: tuple[LeftOut, ...] = ()
+    """The tests that take no part, each with its reason; all else is about the others."""
     aside: tuple[PublishedValue, ...] = ()
+    """Published values that rest on a test that is left out: they are not compared."""
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
+    """What report.toml states of the errors of whole columns, of what they share, and of correlations."""
     published_u: tuple[PublishedValue, ...] = ()
+    """What is published of the uncertainties of cells."""
     limits: tuple[Limits, ...] = ()
     undecided: tuple[Limits, ...] = ()
+    """`limits` and `undecided`: where cells have to lie; those of cells that are missing because a test is
+    left out."""
     taken: Mapping[str, Taken] = field(default_factory=dict)
+    """The parameters and measured columns whose numbers were taken from other reports."""
     heads: Mapping[str, str] = field(default_factory=dict)
+    """The first line of the measurements as it stands, by what it names."""
     texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
+    """The row of each test as it stands, by column; that of one that is left out stands with it."""
     remarks: tuple[str, ...] = ()
+    """The columns of words that come along; nothing is computed from them."""
     alike: tuple[Alike, ...] = ()
+    """Words by which rows belong together, and that may be others misspelt."""
     cards: AskedCards = field(default_factory=AskedCards)
+    """For which simulation codes the report tells what to type into them."""
 
     @property
     def about_source(self) -> bool:

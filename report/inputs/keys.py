@@ -32,20 +32,13 @@ def for_left_out(word: str) -> str:
 
 
 class Key(NamedTuple):
-    """What a key says.
-
-    Parameters
-    ----------
-    example : str
-        What may stand behind it, as it is written there.
-    meaning : str
-    required : bool
-        Whether it must be there; of a table within report.toml, if that table is.
-    """
+    """What a key says."""
 
     example: str
+    """What may stand behind it, as it is written there."""
     meaning: str
     required: bool = False
+    """Whether it must be there; of a table within report.toml, if that table is."""
 
 
 _TAKEN = {

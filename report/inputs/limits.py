@@ -50,24 +50,16 @@ _LEVELS = (Fraction(1, 100), Fraction(999_999, 1_000_000))
 
 @dataclass(frozen=True)
 class Guard:
-    """How far acceptance limits are drawn in (JCGM 106, 8.3.2): so many expanded uncertainties, or a width.
-
-    Parameters
-    ----------
-    times : Fraction
-        Of U; 0 for simple acceptance.
-    width : Printed or None
-        Instead, as it is written.
-    level : float
-        The coverage probability of U.
-    at : Location or None
-        Where it is written.
-    """
+    """How far acceptance limits are drawn in (JCGM 106, 8.3.2): so many times U, or a width."""
 
     times: Fraction = Fraction(0)
+    """Of U; 0 for simple acceptance."""
     width: Printed | None = None
+    """Instead, as it is written."""
     level: float = LEVEL
+    """The coverage probability of U."""
     at: Location | None = None
+    """Where it is written."""
 
     @property
     def draws_in(self) -> bool:
@@ -77,18 +69,10 @@ class Guard:
 
 @dataclass(frozen=True)
 class Limits:
-    """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there.
-
-    Parameters
-    ----------
-    address : str
-        As it was written.
-    low, high : Printed or None
-    guard : Guard
-    at : Location
-    """
+    """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there."""
 
     address: str
+    """As it was written."""
     low: Printed | None
     high: Printed | None
     guard: Guard
@@ -238,11 +222,7 @@ def of_every_row(
 ) -> Iterator[Limits]:
     """Limits of cells: those of a column are of each of its rows that has none of its own.
 
-    Parameters
-    ----------
-    limits : sequence of Limits
-    cells : mapping of str to (str, collection of tuple of int)
-        As for :func:`check_limits`.
+    `cells`: as for :func:`check_limits`.
     """
     own = {each.cell for each in limits}
     for each in limits:
@@ -263,14 +243,7 @@ def check_limits(
 ) -> None:
     """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K.
 
-    Parameters
-    ----------
-    limits : sequence of Limits
-    cells : mapping of str to (str, collection of tuple of int)
-        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
-    findings : Findings
-    words
-        As there.
+    `cells`: as for :func:`~loopsheet.report.inputs.expected.check_expected`. `words`: as there.
     """
     check_expected(limits, (), cells, findings, words=words)
     for each in limits:

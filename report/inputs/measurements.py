@@ -50,30 +50,20 @@ _TEST = re.compile(r"0*[1-9][0-9]{0,8}")
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A test that takes no part in anything.
-
-    Parameters
-    ----------
-    test : int
-        Its number.
-    reason : str
-        Why, in the words of the file.
-    texts : dict of str to str
-        What stands in its row, as it stands, by the name of the column; it may be no number.
-    stated : dict of str to tuple of Error or None
-        What is stated of its numbers, by their columns; None: what stands there is no uncertainty.
-    place : int
-        How many rows stand above it.
-    at : Location
-        Where its reason was written.
-    """
+    """A test that takes no part in anything."""
 
     test: int
+    """Its number."""
     reason: str
+    """Why, in the words of the file."""
     texts: dict[str, str]
+    """What stands in its row, as it stands, by the name of the column; it may be no number."""
     stated: dict[str, tuple[Error, ...] | None]
+    """What is stated of its numbers, by their columns; None: what stands there is no uncertainty."""
     place: int
+    """How many rows stand above it."""
     at: Location
+    """Where its reason was written."""
 
 
 @dataclass(frozen=True)

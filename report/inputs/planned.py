@@ -89,7 +89,6 @@ def read_u(text: str, option: str, inputs: Inputs) -> Said:
 
     Parameters
     ----------
-    text, option : str
     inputs : Inputs
         Whose columns and parameters they are of.
 

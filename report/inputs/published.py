@@ -39,18 +39,12 @@ _CODE = re.compile(r"#[A-Z]+!")
 
 @dataclass(frozen=True)
 class Pin:
-    """What a known difference is: any other one is a finding.
-
-    Parameters
-    ----------
-    printed : str
-        The published number when the difference was accepted.
-    again : str
-        The recomputed one, printed alike; or the code of a cell that had no value.
-    """
+    """What a known difference is: any other one is a finding."""
 
     printed: str
+    """The published number when the difference was accepted."""
     again: str
+    """The recomputed one, printed alike; or the code of a cell that had no value."""
 
     def __str__(self) -> str:
         """As it is written, ``1.234 -> 1.258``."""
@@ -71,51 +65,34 @@ def _same(one: str, other: str) -> bool:
 
 @dataclass(frozen=True)
 class PublishedValue:
-    """A number as a publication prints it.
-
-    Parameters
-    ----------
-    source : str
-        Where it is printed: ``Table 2``, ``text``.
-    cell : str
-        The name of the cell that it is a value of.
-    index : tuple of int
-        ``(1, 2)`` for a pair, ``(3,)`` for a test, ``()`` for a scalar.
-    printed : Printed
-        The number with its digits and its unit.
-    expect : str
-        Empty, or ``differs`` for a difference that is known.
-    pin : Pin or None
-        What it differs to; None where nobody has said it.
-    explained : str
-        The name of the explanation that it rests on, as the referee calls it: ``misprint x_p[2]``.
-    reason : str
-        Why it differs.
-    where : str
-        ``file:line:column`` of the value, relative to the folder.
-    places : mapping of str to Location
-        The place of each field, for findings that need the sheet.
-    label : str
-        What the publication calls its row, if that names an equation: ``eq. 6``.
-    unread : frozenset of str
-        Fields that are refused already; the sheet is not asked for more about them.
-    about : About or None
-        What it tells of a cell besides its value, then `cell` is how that is written; None for a value.
-    """
+    """A number as a publication prints it."""
 
     source: str
+    """Where it is printed: ``Table 2``, ``text``."""
     cell: str
+    """The name of the cell that it is a value of."""
     index: tuple[int, ...]
+    """``(1, 2)`` for a pair, ``(3,)`` for a test, ``()`` for a scalar."""
     printed: Printed
+    """The number with its digits and its unit."""
     expect: str = ""
+    """Empty, or ``differs`` for a difference that is known."""
     pin: Pin | None = None
+    """What it differs to; None where nobody has said it."""
     explained: str = ""
+    """The name of the explanation that it rests on, as the referee calls it: ``misprint x_p[2]``."""
     reason: str = ""
+    """Why it differs."""
     where: str = ""
+    """``file:line:column`` of the value, relative to the folder."""
     places: Mapping[str, Location] = field(default_factory=dict, compare=False, repr=False)
+    """The place of each field, for findings that need the sheet."""
     label: str = ""
+    """What the publication calls its row, if that names an equation: ``eq. 6``."""
     unread: frozenset[str] = frozenset()
+    """Fields that are refused already; the sheet is not asked for more about them."""
     about: About | None = None
+    """What it tells of a cell besides its value, then `cell` is how that is written; None for a value."""
     word: str = ""
     """What stands for its row in the file, if no number does."""
 
@@ -267,7 +244,6 @@ def check_published(
 
     Parameters
     ----------
-    published : sequence of PublishedValue
     free : mapping of str to Location
         The columns that the publication does not print, with the place that says so.
     cells : mapping of str to (str, collection of tuple of int)
@@ -326,7 +302,6 @@ def unit_fits(
         What the number is.
     at : Location or None
         Where it stands.
-    findings : Findings
     width : bool
         Whether it is a difference of values of the cell, as an uncertainty is.
     """

@@ -151,68 +151,44 @@ class _Part:
 
 @dataclass(frozen=True)
 class Conventions:
-    """What a folder says once for all uncertainties in it.
-
-    Parameters
-    ----------
-    bare : Shape or None
-        What limits without a word mean; None: they are refused.
-    draws : callable, optional
-        Takes the name of a table of draws, what quantity they are of, and where it is named; returns them in
-        SI, or None with a finding.
-    take : callable, optional
-        Takes what says where the number of a parameter is to be taken from; returns it, or None with a
-        finding.
-    taken : collection of str
-        The parameters and measured columns that were taken.
-    """
+    """What a folder says once for all uncertainties in it."""
 
     bare: Shape | None = None
+    """What limits without a word mean; None: they are refused."""
     draws: Read | None = None
+    """Takes the name of a table of draws, what quantity they are of, and where it is named; returns them in
+    SI, or None with a finding."""
     take: Callable[[Mapping[str, object], Declared], Printed | None] | None = None
+    """Takes what says where the number of a parameter is to be taken from; returns it, or None with a
+    finding."""
     taken: Collection[str] = ()
+    """The parameters and measured columns that were taken."""
 
 
 @dataclass(frozen=True)
 class Of:
-    """What an uncertainty is stated of.
-
-    Parameters
-    ----------
-    numbers : sequence of Printed
-        All numbers of the column, or the one of a parameter; none of an error that tests share.
-    bounds : Bounds
-        Between which the quantity lies, in SI.
-    draws : callable, optional
-        Takes the name of a table; returns the draws of the quantity in it, in SI, or None with a finding of
-        its own. There is none where it is more than one quantity.
-    """
+    """What an uncertainty is stated of."""
 
     numbers: Sequence[Printed] = ()
+    """All numbers of the column, or the one of a parameter; none of an error that tests share."""
     bounds: Bounds = _ANYWHERE
+    """Between which the quantity lies, in SI."""
     draws: Callable[[str], Draws | None] | None = None
+    """Takes the name of a table; returns the draws of the quantity in it, in SI, or None with a finding of
+    its own. There is none where it is more than one quantity."""
 
 
 @dataclass(frozen=True)
 class StatedErrors:
-    """What a text says of the uncertainty of a number.
-
-    Parameters
-    ----------
-    parts : tuple
-        The errors, each independent of the others; none if it is exact.
-    """
+    """What a text says of the uncertainty of a number."""
 
     parts: tuple[_Part, ...]
+    """The errors, each independent of the others; none if it is exact."""
 
     def of(self, printed: Printed, of: str = "") -> tuple[Error, ...]:
         """The errors of a number: what is a share of it follows its value.
 
-        Parameters
-        ----------
-        printed : Printed
-        of : str
-            What else it is stated of, each by the same estimate; nothing for a number alone.
+        `of`: what else it is stated of, each by the same estimate; nothing for a number alone.
         """
         return tuple(part.of(printed, of and f"{of} {n}") for n, part in enumerate(self.parts))
 

@@ -19,11 +19,7 @@ __all__ = ["TomlTables"]
 class TomlTables:
     """What is read of the tables of a TOML file.
 
-    Parameters
-    ----------
-    toml : TomlFile
-    findings : Findings
-        Where findings go.
+    `findings`: where findings go.
     """
 
     def __init__(self, toml: TomlFile, findings: Findings) -> None:
@@ -32,12 +28,8 @@ class TomlTables:
     def keys(self, table: tuple[str, ...], own: Iterable[str] = ()) -> dict[str, Any]:
         """Return a table after a look at its keys; an absent one, or no table at all, is empty.
 
-        Parameters
-        ----------
-        table : tuple of str
-            Its place, one of :data:`~loopsheet.report.inputs.keys.TABLES`.
-        own : iterable of str
-            What there may be besides: names of the folder's own.
+        `table`: its place, one of :data:`~loopsheet.report.inputs.keys.TABLES`. `own`: what there may be
+        besides: names of the folder's own.
         """
         data: Any = self.toml.data
         for name in table:

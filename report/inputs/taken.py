@@ -56,51 +56,33 @@ Origin = tuple[str, str]
 
 @dataclass(frozen=True)
 class TakenError:
-    """What one error of another report does to a number that was taken from it.
-
-    Parameters
-    ----------
-    origin : tuple of str
-    moved : float
-        By its standard uncertainty, in SI, with its sign.
-    error : Error
-        Its shape, degrees of freedom and sample; its width is 1.
-    """
+    """What one error of another report does to a number that was taken from it."""
 
     origin: Origin
     moved: float
+    """By its standard uncertainty, in SI, with its sign."""
     error: Error
+    """Its shape, degrees of freedom and sample; its width is 1."""
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A parameter or a measured column that was taken.
-
-    Parameters
-    ----------
-    file, cell : str
-    printed : tuple of Printed
-        Its numbers, one a row, with all their digits, in SI.
-    errors : tuple of tuple of TakenError
-        Of each of them.
-    correlations : mapping of two origins to float
-        Between errors of that report.
-    spare : mapping of int to (Printed, tuple of TakenError)
-        The same of tests that take no part, as far as there are such.
-    told : str
-        How its rows were found, where either report knows rows by words; empty where both have numbers alone.
-    doubtful : bool
-        Whether they may be others than those that are meant, though they have their numbers.
-    """
+    """A parameter or a measured column that was taken."""
 
     file: str
     cell: str
     printed: tuple[Printed, ...]
+    """Its numbers, one a row, with all their digits, in SI."""
     errors: tuple[tuple[TakenError, ...], ...]
+    """Of each of them."""
     correlations: Mapping[tuple[Origin, Origin], float]
+    """By two origins; between errors of that report."""
     spare: Mapping[int, Number] = field(default_factory=dict)
+    """The same of tests that take no part, as far as there are such."""
     told: str = ""
+    """How its rows were found, where either report knows rows by words; else empty."""
     doubtful: bool = False
+    """Whether they may be others than those that are meant, though they have their numbers."""
 
     def of(self, rows: Iterable[int]) -> Taken:
         """The same of some rows."""
@@ -117,11 +99,7 @@ class Taken:
 def alone(taken: Mapping[str, Taken], columns: Collection[str]) -> frozenset[Origin]:
     """The errors of what was taken that move numbers of one test alone, of those that take no part, too.
 
-    Parameters
-    ----------
-    taken : mapping of str to Taken
-    columns : collection of str
-        Those with a row a test.
+    `columns`: those with a row a test.
     """
     rows: dict[Origin, set[str]] = {}
     for name, column in taken.items():
@@ -141,7 +119,7 @@ def read_taken(
     findings: Findings,
     read: Read,
     tests: Sequence[int] | None = None,
-    spare: Iterable[int] = (),
+    spare: Sequence[int] = (),
     words: Mapping[str, Mapping[int, str]] = MappingProxyType({}),
 ) -> Taken | None:
     """Read what is to be taken; None, with a finding, if it cannot be.
@@ -150,16 +128,13 @@ def read_taken(
     ----------
     said : mapping of str to object
         What stands in the file at that path.
-    path : tuple of str
     of : Declared
         What it shall be.
-    toml : TomlFile
-    findings : Findings
     read : callable
         Takes the name of a file and where it stands; returns what it holds, or None with a finding.
     tests : sequence of int or None
         Whose rows of a column are taken, in this order; None: one number.
-    spare : iterable of int
+    spare : sequence of int
         The tests that take no part.
     words : mapping of str to mapping of int to str
         The columns of words beside the tests, with the word of each.
@@ -188,7 +163,7 @@ def read_taken(
     if tests is None:
         rows: Mapping[int, Index] | None = {0: reader.index}
     else:
-        rows = reader.rows(tests, words) if reader.column() else None
+        rows = reader.rows(tests, spare, words) if reader.column() else None
     numbers = reader.numbers([rows[test] for test in tests or (0,)], where) if rows is not None else None
     if rows is None or numbers is None:
         return None
@@ -263,7 +238,7 @@ class _Reader:
         return {test: self.number(rows[test], where) for test in known if self.moved(rows[test]) is not None}
 
     def rows(
-        self, tests: Sequence[int], words: Mapping[str, Mapping[int, str]]
+        self, tests: Sequence[int], spare: Sequence[int], words: Mapping[str, Mapping[int, str]]
     ) -> Mapping[int, Index] | None:
         """The row of each test, of those that take no part, too: None, with a finding, if one has none.
 
@@ -291,8 +266,7 @@ class _Reader:
             there = listing(self.words.values()) if self.words else "nothing but numbers"
             self.told = f"of each row that of its number in {self.file}, where rows are called {there}"
             self.doubtful = True
-        every = dict.fromkeys((*tests, *(test for column in words.values() for test in column)))
-        return {test: (test,) for test in every}
+        return {test: (test,) for test in (*tests, *spare)}
 
     def column(self) -> bool:
         """Whether what is named is a column with a row a test."""

@@ -42,12 +42,7 @@ class _Mark(NamedTuple):
 class TomlFile:
     """The data of a TOML file, and where its keys and values stand.
 
-    Parameters
-    ----------
-    source : Source
-        The text, which tomllib has accepted.
-    data : dict
-        What tomllib made of it.
+    `source`: the text, which tomllib has accepted. `data`: what tomllib made of it.
     """
 
     def __init__(self, source: Source, data: dict[str, Any]) -> None:

@@ -54,25 +54,17 @@ One = TypeVar("One", "Printed", "Printed | None")
 
 @dataclass(frozen=True)
 class SharedError:
-    """One error of many cells of a column: of all, or of those of a group.
-
-    Parameters
-    ----------
-    name : str
-        What it is, in the words of the file.
-    of : str
-        The column.
-    statement : StatedErrors
-        Of one error; what is a share of the value is a scale error, and larger for a larger value.
-    groups : tuple of tuple of int
-        The tests of each group; none: all tests are one. A test of no group has no such error, and one that
-        is left out counts for nothing.
-    """
+    """One error of many cells of a column: of all, or of those of a group."""
 
     name: str
+    """What it is, in the words of the file."""
     of: str
+    """The column."""
     statement: StatedErrors
+    """Of one error; what is a share of the value is a scale error, and larger for a larger value."""
     groups: tuple[tuple[int, ...], ...] = ()
+    """The tests of each group; none: all tests are one. A test of no group has no such error, and one that is
+    left out counts for nothing."""
 
     def error(self, printed: Printed) -> Error:
         """What it is for a number."""
@@ -81,27 +73,18 @@ class SharedError:
 
 @dataclass(frozen=True)
 class Stated:
-    """What the section says.
-
-    Parameters
-    ----------
-    columns : mapping of str to StatedErrors
-        Of measured columns and of parameters.
-    shared : tuple of SharedError
-    correlations : mapping of (str, str) to float
-        Between the errors of two columns in the same test, or of two parameters.
-    paired : tuple of str
-        The columns whose numbers are repeated readings that were taken together, a row each: all of it is one
-        sample.
-    digits : int
-        Of an uncertainty that is shown: from these follow those of its value.
-    """
+    """What the section says."""
 
     columns: Mapping[str, StatedErrors]
+    """Of measured columns and of parameters."""
     shared: tuple[SharedError, ...] = ()
     correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """By (str, str); between the errors of two columns in the same test, or of two parameters."""
     paired: tuple[str, ...] = ()
+    """The columns whose numbers are repeated readings that were taken together, a row each: all of it is one
+    sample."""
     digits: int = DIGITS[-1]
+    """Of an uncertainty that is shown: from these follow those of its value."""
 
     def of(self, numbers: Mapping[str, tuple[One, ...]]) -> dict[str, tuple[One, ...]]:
         """Numbers with what is stated of them."""

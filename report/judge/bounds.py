@@ -34,7 +34,6 @@ def bounds(sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Arra
 
     Parameters
     ----------
-    sheet : Sheet
     layouts : mapping of axis name to Layout
     value : mapping of column name to float array (rows,)
         All columns in SI; NaN where a cell has no value.

@@ -66,18 +66,13 @@ class Made:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Entries of a node or of some cells, those of a row beside one another.
-
-    Parameters
-    ----------
-    rows, by, entries : integer arrays (entries,)
-        The row of each, the number of what it is a derivative by (behind all sources, of a scalar), and its
-        place among the entries of all nodes.
-    """
+    """Entries of a node or of some cells, those of a row beside one another."""
 
     rows: Numbered
     by: Numbered
     entries: Numbered
+    """`rows`, `by` and `entries`: of shape (entries,); the row of each, the number of what it is a derivative
+    by (behind all sources, of a scalar), and its place among the entries of all nodes."""
 
     def by_scalars(self, sources: int) -> tuple[Numbered, Numbered, Numbered, Numbered]:
         """What comes by way of scalars: their numbers behind the sources, and the places of the entries.
@@ -110,27 +105,19 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Level:
-    """Nodes that rest on none of one another.
-
-    Parameters
-    ----------
-    nodes : tuple of Local
-    slopes : tuple of (Local, Slope, slice)
-        The slopes of all of them, one after another.
-    of, along : integer arrays (terms,)
-        The slope of each term of their entries, and the entry that it is multiplied with.
-    starts : integer array (entries,)
-        The first term of each entry.
-    entries : slice
-        The places of these.
-    """
+    """Nodes that rest on none of one another."""
 
     nodes: tuple[Local, ...]
     slopes: tuple[tuple[Local, Slope, slice], ...]
+    """The slopes of all of them, one after another."""
     of: Numbered
     along: Numbered
+    """`of` and `along`: of shape (terms,); the slope of each term of their entries, and the entry that it is
+    multiplied with."""
     starts: Numbered
+    """Of shape (entries,); the first term of each entry."""
     entries: slice
+    """The places of these."""
 
     @property
     def width(self) -> int:

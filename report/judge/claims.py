@@ -33,7 +33,6 @@ def claims(
 
     Parameters
     ----------
-    said : sequence of Claimed
     sheet : Sheet
         Whose cells they name.
     labels, data

@@ -46,7 +46,6 @@ class _Rows:
 
     Parameters
     ----------
-    sheet : Sheet
     layouts : mapping of axis name to Layout
     value, sure
         As for :class:`Enclosure`.
@@ -99,7 +98,6 @@ class Enclosure(_Rows):
 
     Parameters
     ----------
-    sheet : Sheet
     program : Program
         The sheet's.
     layouts : mapping of axis name to Layout
@@ -318,13 +316,7 @@ class _Along(Along):
 
 
 def _shares(terms: Intervals, word: str) -> Intervals:
-    """How much of the change of each row counts by its place: any part of one that may be there.
-
-    Parameters
-    ----------
-    terms : Intervals (rows,)
-    word : str
-    """
+    """How much of the change of each row counts by its place: any part of one that may be there."""
     total = Intervals(np.zeros(terms.shape), np.zeros(terms.shape))
     taken = terms.in_order(places(word, terms.shape[-1]))
     for one in taken:

@@ -37,22 +37,15 @@ MOST_FINDINGS = 20
 
 @dataclass(frozen=True)
 class Judge:
-    """The exact values of a sheet and how wrong doubles may be.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    judged : ExactValues
-    bounds : mapping of column name to float array (rows,)
-        As from :func:`~loopsheet.report.judge.bounds.bounds`, of the exact values.
-    addresses : mapping of column name to sequence of str
-        What the cells are called.
-    """
+    """The exact values of a sheet and how wrong doubles may be."""
 
     sheet: Sheet
     judged: exact.ExactValues
     bounds: Mapping[str, NDArray[np.float64]]
+    """Of shape (rows,), by column name; as from :func:`~loopsheet.report.judge.bounds.bounds`, of the exact
+    values."""
     addresses: Mapping[str, Sequence[str]] = field(repr=False)
+    """By column name; what the cells are called."""
 
     @classmethod
     def of(
@@ -67,7 +60,6 @@ class Judge:
 
         Parameters
         ----------
-        sheet : Sheet
         layouts : mapping of axis name to Layout
         labels, data
             As for :func:`loopsheet.report.engines.exact.evaluate`.
@@ -84,12 +76,7 @@ class Judge:
         return cls(sheet, judged, bounds(sheet, layouts, doubles), addresses)
 
     def agreement(self, reading: Reading) -> Agreement:
-        """Judge what an engine found.
-
-        Parameters
-        ----------
-        reading : Reading
-        """
+        """Judge what an engine found."""
         engine, program = reading.engine, reading.program
         if reading.missing:
             return Agreement(0, 0.0, "", (), engine=engine, missing=reading.missing)
@@ -187,24 +174,14 @@ def _addresses(values: Values, column: Column) -> list[str]:
 def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Mapping[str, Any]) -> Agreement:
     """Evaluate the sheet at 50 digits and compare NumPy's values.
 
-    Parameters
-    ----------
-    values : Values
-        What the engine found.
-    labels, exact_data
-        As for :func:`loopsheet.report.engines.exact.evaluate`.
+    `values`: what the engine found. `labels` and `exact_data`: as for
+    :func:`loopsheet.report.engines.exact.evaluate`.
     """
     return Judge.of(values.sheet, values.layouts, labels, exact_data).agreement(of_values(values))
 
 
 def compare_all(judge: Judge, case: Case) -> tuple[Agreement, ...]:
-    """Compare every engine that is found on this machine.
-
-    Parameters
-    ----------
-    judge : Judge
-    case : Case
-    """
+    """Compare every engine that is found on this machine."""
     found = []
     for reader in ENGINES.values():
         module, _, function = reader.partition(":")

@@ -51,81 +51,54 @@ _SHOWN = 300
 
 @dataclass(frozen=True)
 class Book:
-    """A workbook and where the sheet's columns stand in it.
-
-    Parameters
-    ----------
-    content : bytes
-        The xlsx file.
-    grid : Grid
-    """
+    """A workbook and where the sheet's columns stand in it."""
 
     content: bytes
+    """The xlsx file."""
     grid: Grid
 
 
 @dataclass(frozen=True)
 class Case:
-    """What an engine is to compute.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    labels : mapping of axis name to sequence of int
-    data : mapping of column name to float or sequence of float
-        The given columns in SI, as the NumPy engine gets them; NaN is a missing datum.
-    values : Values, optional
-        What NumPy found, without a batch dimension.
-    book : Book, optional
-        The report's workbook; without it, there is nothing to recalculate.
-    """
+    """What an engine is to compute."""
 
     sheet: Sheet
     labels: Mapping[str, Sequence[int]]
+    """By axis name."""
     data: Mapping[str, Any]
+    """By column name; the given columns in SI, as the NumPy engine gets them; NaN is a missing datum."""
     values: Values | None = None
+    """What NumPy found, without a batch dimension."""
     book: Book | None = None
+    """The report's workbook; without it, there is nothing to recalculate."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What an engine found, or why it found nothing.
-
-    Parameters
-    ----------
-    engine : str
-        ``numpy``, ``JavaScript``, ``xlsx``.
-    program : str
-        What ran it, with its version, ``node 20.19``; empty if it needs none.
-    value : mapping of column name to sequence of float, Fraction or None
-        SI; None where there is no number.
-    status : mapping of column name to sequence of str
-        ``ok``, a code of :data:`~loopsheet.report.cells.values.CODES`, or what else the engine says.
-    missing : str
-        The program that is not installed; then there are no values.
-    failure : str
-        What the program said when it failed; then there are no values.
-    rounded : mapping of column name to sequence of Fraction
-        How much of each number the engine's file may have lost, in SI; empty if it keeps all digits.
-    """
+    """What an engine found, or why it found nothing."""
 
     engine: str
+    """``numpy``, ``JavaScript``, ``xlsx``."""
     program: str = ""
+    """What ran it, with its version, ``node 20.19``; empty if it needs none."""
     value: Mapping[str, Sequence[float | Fraction | None]] = field(default_factory=dict)
+    """By column name; SI; None where there is no number."""
     status: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """By column name; ``ok``, a code of :data:`~loopsheet.report.cells.values.CODES`, or what else the engine
+    says."""
     missing: str = ""
+    """The program that is not installed; then there are no values."""
     failure: str = ""
+    """What the program said when it failed; then there are no values."""
     rounded: Mapping[str, Sequence[Fraction]] = field(default_factory=dict)
+    """By column name; how much of each number the engine's file may have lost, in SI; empty if it keeps all
+    digits."""
 
 
 def of_values(values: Values, engine: str = "numpy") -> Reading:
     """What an engine of this package found.
 
-    Parameters
-    ----------
-    values : Values
-        Without a batch dimension.
-    engine : str
+    `values`: without a batch dimension.
     """
     numbers, codes = {}, {}
     for name in values.sheet.by_name:
@@ -290,12 +263,7 @@ def _recalculated(soffice: str, content: bytes) -> dict[str, dict[str, float | s
 
 
 def without_results(content: bytes) -> bytes:
-    """A workbook whose formulas have no stored results: what is read back was computed.
-
-    Parameters
-    ----------
-    content : bytes
-    """
+    """A workbook whose formulas have no stored results: what is read back was computed."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(buffer, "w") as new:
         for name in old.namelist():
@@ -308,10 +276,6 @@ def without_results(content: bytes) -> bytes:
 
 def read_cells(content: bytes) -> dict[str, dict[str, float | str]]:
     """Every cell of a workbook that holds something: a number, or its text; an error's name is a text.
-
-    Parameters
-    ----------
-    content : bytes
 
     Returns
     -------

@@ -26,7 +26,6 @@ def part(inputs: Inputs, values: Values, most: int) -> Inputs:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         Of all tests; with all columns that count.
     most : int
@@ -86,10 +85,7 @@ def _drawn(inputs: Inputs, number: int) -> list[int]:
 def with_own(values: Values, whole: Values) -> Values:
     """The values of a part, with those of the whole in every cell that is the same in both.
 
-    Parameters
-    ----------
-    values, whole : Values
-        Of some of the tests and of all; the same sheet.
+    `values` and `whole`: of some of the tests and of all; the same sheet.
     """
     sheet = values.sheet
     numbers, statuses = dict(values.value), dict(values.status)

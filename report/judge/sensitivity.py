@@ -33,7 +33,6 @@ class Along:
 
     Parameters
     ----------
-    chain : Chain
     nothing : callable
         Makes zeros of a shape, of the kind that goes along.
     batch : tuple of int
@@ -86,12 +85,7 @@ class Along:
     def derivatives(self, cells: Pattern, number: int) -> Any:
         """The derivatives of some cells by all sources (..., cells, sources).
 
-        Parameters
-        ----------
-        cells : Pattern
-            From :meth:`Chain.cells`.
-        number : int
-            How many they are.
+        `cells`: from :meth:`Chain.cells`. `number`: how many they are.
         """
         found, sources = self.nothing((*self.batch, number, self.chain.number)), self.chain.number
         direct = cells.by < sources
@@ -112,11 +106,7 @@ class Along:
 class Numbers(Along):
     """The derivatives at finished values; NaN where they are not known.
 
-    Parameters
-    ----------
-    chain : Chain
-    values : Values
-        All columns; a batch is one of derivatives.
+    `values`: all columns; a batch is one of derivatives.
     """
 
     def __init__(self, chain: Chain, values: Values) -> None:

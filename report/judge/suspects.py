@@ -26,7 +26,6 @@ def suspected(report: Report, odd: Collection[Tests], failed: Collection[Tests])
 
     Parameters
     ----------
-    report : Report
     odd : collection of tuple of int
         The numbers of the tests of each odd row.
     failed : collection of tuple of int

@@ -117,10 +117,7 @@ class Background(Generic[T]):
 def serve(parent: int) -> None:
     """Do in this process what another one asks for, and tell it.
 
-    Parameters
-    ----------
-    parent : int
-        The process that asks, by its number.
+    `parent`: the process that asks, by its number.
     """
     ample()
     answer = os.fdopen(os.dup(1), "wb")

@@ -50,10 +50,7 @@ _HEADERS = {
 class Server:
     """Serves a folder until it is closed.
 
-    Parameters
-    ----------
-    out : Path
-        The outputs; what is in no output of ours is served neither.
+    `out`: the outputs; what is in no output of ours is served neither.
     """
 
     def __init__(self, out: Path) -> None:

@@ -31,8 +31,6 @@ def run(
 
     Parameters
     ----------
-    command : sequence of str
-    seconds : float
     text : str, optional
         What it reads.
     folder : Path, optional

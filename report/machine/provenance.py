@@ -31,10 +31,7 @@ def sources(root: Path = ROOT) -> dict[str, str]:
     The same from a wheel and from a checkout: only files that a wheel holds are counted, by their names
     below the package.
 
-    Parameters
-    ----------
-    root : Path
-        The folder of the package.
+    `root`: the folder of the package.
     """
     parts: dict[str, tuple[tuple[str, Stamp], ...]] = {}
     counted: set[str] = set()

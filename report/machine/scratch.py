@@ -79,7 +79,6 @@ def locked(folder: Path, seconds: float) -> int | None:
 
     Parameters
     ----------
-    folder : Path
     seconds : float
         How long to wait for somebody else.
 

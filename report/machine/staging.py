@@ -28,11 +28,7 @@ _HEAD = 1000
 def put(path: Path, content: str | bytes) -> None:
     """Write a file, and the folders above it.
 
-    Parameters
-    ----------
-    path : Path
-    content : str or bytes
-        Text is written as UTF-8.
+    `content`: text is written as UTF-8.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -51,7 +47,6 @@ def replaced(path: Path, before: bytes, after: bytes) -> None:
         Where a link leads to is replaced, not the link.
     before : bytes
         What was read; a file that somebody has changed since is left alone.
-    after : bytes
 
     Raises
     ------
@@ -66,7 +61,6 @@ def own(path: Path, mark: bytes) -> bytes | None:
 
     Parameters
     ----------
-    path : Path
     mark : bytes
         What a file of ours says in its first lines.
 
@@ -93,10 +87,8 @@ def written(path: Path, before: bytes | None, content: bytes) -> None:
 
     Parameters
     ----------
-    path : Path
     before : bytes or None
         What :func:`own` found there.
-    content : bytes
 
     Raises
     ------

@@ -21,13 +21,7 @@ _PATIENCE = 10.0
 
 
 class Stopped(KeyboardInterrupt):
-    """Somebody asked us to end.
-
-    Parameters
-    ----------
-    number : int
-        The signal.
-    """
+    """Somebody asked us to end."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -129,12 +123,6 @@ def worker(parent: int, work: Callable[[], None]) -> None:
 
     What a terminal sends to all is for the parent, which ends its workers by SIGTERM. If the parent is
     killed, nobody does: then the worker tells itself.
-
-    Parameters
-    ----------
-    parent : int
-        Its process number.
-    work : callable
     """
     _stop.shields = 1  # until there is somebody to catch what it throws
     sys.unraisablehook = _stop.lost

@@ -20,25 +20,17 @@ _HIDDEN = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
 
 @dataclass(frozen=True)
 class Location:
-    """A place in a file.
-
-    Parameters
-    ----------
-    path : str
-        The file, as the user would write it.
-    line, column : int or None
-        Counted from 1, in characters; None where the finding is about the whole file.
-    length : int
-        How many characters of the line the finding is about.
-    source : str or None
-        The line itself.
-    """
+    """A place in a file."""
 
     path: str = ""
+    """The file, as the user would write it."""
     line: int | None = None
     column: int | None = None
+    """`line` and `column`: counted from 1, in characters; None where the finding is about the whole file."""
     length: int = 1
+    """How many characters of the line the finding is about."""
     source: str | None = None
+    """The line itself."""
 
     def __str__(self) -> str:
         """Say ``file:line:column``."""
@@ -47,25 +39,17 @@ class Location:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding: a stable code, a sentence, a place, what was allowed and what to try.
-
-    Parameters
-    ----------
-    code : str
-        The key of :data:`loopsheet.report.messages.errors.CATALOGUE`; it never changes its meaning.
-    message : str
-        What happened.
-    at : Location
-        Where.
-    allowed, hint : str
-        What was allowed, and what to try; empty where there is nothing to say.
-    """
+    """One finding: a stable code, a sentence, a place, what was allowed and what to try."""
 
     code: str
+    """The key of :data:`loopsheet.report.messages.errors.CATALOGUE`; it never changes its meaning."""
     message: str
+    """What happened."""
     at: Location = Location()
+    """Where."""
     allowed: str = ""
     hint: str = ""
+    """`allowed` and `hint`: what was allowed, and what to try; empty where there is nothing to say."""
 
     @property
     def order(self) -> tuple[str, int, int, str]:
@@ -75,33 +59,22 @@ class Diagnostic:
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that is as expected, or is not.
-
-    Parameters
-    ----------
-    kind : str
-        ``proof``, ``engine``, ``published``, ...: what is checked.
-    name : str
-        What it is about: ``(11)``, ``numpy``, ``alpha[1-2]``; no two of a kind have the same.
-    passed : bool
-        Whether it is as expected.
-    message : str
-        What was found, in a sentence that names it.
-    at : Location
-        Where the user wrote what was checked; the report.toml if it was nowhere written.
-    skipped : bool
-        It could not be checked, and nothing is wrong: a program is not installed.
-    note : str
-        As what it is told although it passed: ``warning``, ``expected``; nothing fails because of it.
-    """
+    """One thing that is as expected, or is not."""
 
     kind: str
+    """``proof``, ``engine``, ``published``, ...: what is checked."""
     name: str
+    """What it is about: ``(11)``, ``numpy``, ``alpha[1-2]``; no two of a kind have the same."""
     passed: bool
+    """Whether it is as expected."""
     message: str
+    """What was found, in a sentence that names it."""
     at: Location = Location()
+    """Where the user wrote what was checked; the report.toml if it was nowhere written."""
     skipped: bool = False
+    """It could not be checked, and nothing is wrong: a program is not installed."""
     note: str = ""
+    """As what it is told although it passed: ``warning``, ``expected``; nothing fails because of it."""
 
     @property
     def word(self) -> str:
@@ -131,12 +104,7 @@ def _visible_character(character: str) -> str:
 
 
 class VisibleStream:
-    """A stream that writes what :func:`visible` makes of each line: all that is printed goes through one.
-
-    Parameters
-    ----------
-    stream : TextIO
-    """
+    """A stream that writes what :func:`visible` makes of each line: all that is printed goes through one."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream

@@ -633,13 +633,7 @@ def unknown(kind: str, text: str, known: Iterable[str], most: int = 12) -> Usage
 
 
 class UnknownWorkbook(LookupError):
-    """No workbook has this name.
-
-    Parameters
-    ----------
-    known : iterable of str
-        The names there are.
-    """
+    """No workbook has this name."""
 
     def __init__(self, known: Iterable[str] = ()) -> None:
         self.known = tuple(known)

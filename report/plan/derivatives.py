@@ -67,31 +67,20 @@ _NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
 
 @dataclass(frozen=True)
 class Derivatives:
-    """The derivatives of a sheet.
-
-    Parameters
-    ----------
-    again : mapping of str to str
-        Columns with roots whose cells do not tell the unknown, with the name of what stands for it.
-    plan : Plan
-        Its parts hold roundings and slopes; where one has no value, nothing is known.
-    nodes : tuple of Local
-        Each after those that it names.
-    """
+    """The derivatives of a sheet."""
 
     again: Mapping[str, str]
+    """Columns with roots whose cells do not tell the unknown, with the name of what stands for it."""
     plan: Plan
+    """Its parts hold roundings and slopes; where one has no value, nothing is known."""
     nodes: tuple[Local, ...]
+    """Each after those that it names."""
 
 
 def derivatives(sheet: Sheet, roundings: bool = True) -> Derivatives:
     """Make the plan of a sheet's derivatives.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    roundings : bool
-        Whether what rounding does is asked for too.
+    `roundings`: whether what rounding does is asked for too.
     """
     plan = lowered(sheet)
     making = _Making(plan, roundings)
@@ -334,10 +323,7 @@ def _chosen(expression: Any) -> Any:
 def rounding(expression: Expr) -> Expr:
     """What the operations of an expression round, in units of eps: what it names is exact, results are not.
 
-    Parameters
-    ----------
-    expression : Expr
-        In plain symbols.
+    `expression`: in plain symbols.
     """
     if expression.is_Symbol:
         return Integer(0)

@@ -63,11 +63,7 @@ _EVERYWHERE = (
 def typed(sheet: Sheet, expression: Expr) -> Expr:
     """The expression in cells of which is assumed what they may be: a given one that is allowed to be 0 is.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    expression : Expr
-        A formula of the sheet. What is made of it names the same cells.
+    `expression`: a formula of the sheet. What is made of it names the same cells.
     """
     own = {sheet[name].symbol: Symbol(name, **assumed(bounds)) for name, bounds in sheet.bounds.items()}
     found: Expr = expression.xreplace(own)

@@ -21,7 +21,6 @@ def of_sheet(sheet: Sheet, what: str, parts: Iterable[str], make: Callable[[], A
 
     Parameters
     ----------
-    sheet : Sheet
     what : str
         What it is, in a word or two.
     parts : iterable of str

@@ -28,11 +28,7 @@ RESERVED = ("numpy", "run")
 def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
     """Lower a sheet.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    known : collection of str
-        Columns that are computed already: they have no node.
+    `known`: columns that are computed already: they have no node.
     """
     key = frozenset(known)
     if key not in sheet.plans:
@@ -44,24 +40,13 @@ def lowered(sheet: Sheet, known: Collection[str] = ()) -> Plan:
 
 
 def lowered_column(sheet: Sheet, column: Column) -> Plan:
-    """The nodes of one column alone.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    column : Column
-    """
+    """The nodes of one column alone."""
     lowering = Lowering(sheet)
     return Plan(tuple(lowering.nodes(column)), lowering.leaves)
 
 
 class Lowering:
-    """A sheet being lowered: the symbols so far, and what each stands for.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+    """A sheet being lowered: the symbols so far, and what each stands for."""
 
     def __init__(self, sheet: Sheet) -> None:
         self.sheet = sheet
@@ -118,7 +103,6 @@ class Lowering:
 
         Parameters
         ----------
-        expression : Basic
         column : Column
             In whose rule it stands.
         axis : Axis or None

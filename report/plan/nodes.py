@@ -36,27 +36,19 @@ Kind = Literal["cells", "total", "part", "size", "kept", "ordinal"]
 
 @dataclass(frozen=True)
 class Leaf:
-    """What a plain symbol stands for: an array with a number for each row of an axis, or one number.
-
-    Parameters
-    ----------
-    kind : str
-        ``cells`` of a column; a ``total`` over rows; a ``part`` that is neither; the ``size`` of an axis;
-        how many of its rows are ``kept`` in the sums of a column; the ``ordinal``, a running number of them.
-    name : str
-        Of the column, the total or the part.
-    axis : Axis or None
-        On whose rows it is read, or whose rows are counted; None for one number. A total over the rows of a
-        group has a number for each group.
-    index : str or None
-        For cells, the index that names them from there; None if they stand on the same rows. For an ordinal,
-        the running number.
-    """
+    """What a plain symbol stands for: an array with a number for each row of an axis, or one number."""
 
     kind: Kind
+    """``cells`` of a column; a ``total`` over rows; a ``part`` that is neither; the ``size`` of an axis; how
+    many of its rows are ``kept`` in the sums of a column; the ``ordinal``, a running number of them."""
     name: str = ""
+    """Of the column, the total or the part."""
     axis: Axis | None = None
+    """On whose rows it is read, or whose rows are counted; None for one number. A total over the rows of a
+    group has a number for each group."""
     index: str | None = None
+    """For cells, the index that names them from there; None if they stand on the same rows. For an ordinal,
+    the running number."""
 
     @property
     def written(self) -> str:
@@ -70,12 +62,7 @@ class Leaf:
 class RowSum(Expr):
     """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
 
-    Parameters
-    ----------
-    terms : Expr
-        In plain symbols, each of which stands for an array.
-    axis : Symbol
-        The axis' name.
+    `terms`: in plain symbols, each of which stands for an array. `axis`: the axis' name.
     """
 
     def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
@@ -105,12 +92,7 @@ class RowSum(Expr):
 class RowOrder(Expr):
     """What is taken by order of an axis' rows, as a function of the array of its terms.
 
-    Parameters
-    ----------
-    terms, axis
-        As for :class:`RowSum`.
-    word : Str
-        ``median``, ``max`` or ``min``.
+    `terms` and `axis`: as for :class:`RowSum`. `word`: ``median``, ``max`` or ``min``.
     """
 
     is_commutative = True
@@ -148,46 +130,29 @@ def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class GivenNode:
-    """A column whose values come with the data.
-
-    Parameters
-    ----------
-    column : Column
-    datum : Symbol
-        Stands for a value in `allowed`.
-    allowed : Boolean or None
-        What a value must satisfy; None if any number will do.
-    """
+    """A column whose values come with the data."""
 
     column: Column
     datum: Symbol
+    """Stands for a value in `allowed`."""
     allowed: Boolean | None = None
+    """What a value must satisfy; None if any number will do."""
 
 
 @dataclass(frozen=True)
 class Total:
-    """What is taken over those rows of an axis of which all cells that its column sums have values.
-
-    Parameters
-    ----------
-    column : Column
-        In whose rule it stands.
-    symbol : Symbol
-        What stands for it.
-    over : Axis
-    terms : Expr
-    written : Expr
-        As the rule has it, in cells of rows.
-    word : str
-        What is taken.
-    """
+    """What is taken over those rows of an axis of which all cells that its column sums have values."""
 
     column: Column
+    """In whose rule it stands."""
     symbol: Symbol
+    """What stands for it."""
     over: Axis
     terms: Expr
     written: Expr
+    """As the rule has it, in cells of rows."""
     word: Word = "sum"
+    """What is taken."""
 
     @property
     def axis(self) -> Axis | None:
@@ -197,105 +162,67 @@ class Total:
 
 @dataclass(frozen=True)
 class Map:
-    """A column of which each row is a formula of rows.
-
-    Parameters
-    ----------
-    column : Column
-    value : Expr
-    requires : tuple of Boolean
-        The column's conditions, in their order.
-    defined : Boolean
-        Where it has a value at all; its sums stand in it. False where that is not known.
-    positive : Boolean
-        Where it is positive although no double may hold it; false if its value alone says it.
-    """
+    """A column of which each row is a formula of rows."""
 
     column: Column
     value: Expr
     requires: tuple[Boolean, ...]
+    """The column's conditions, in their order."""
     defined: Boolean
+    """Where it has a value at all; its sums stand in it. False where that is not known."""
     positive: Boolean
+    """Where it is positive although no double may hold it; false if its value alone says it."""
 
 
 @dataclass(frozen=True)
 class RootNode:
-    """A column of which each row is made of the only zero of an equation in an interval.
-
-    Parameters
-    ----------
-    column : Column
-    unknown : Symbol
-    low, high, start : Expr
-        The ends of the interval, and a first guess.
-    sign_low, sign_high : Expr or None
-        What has the equation's sign at the ends; None if it is evaluated there.
-    turning : tuple of Expr
-        Points between which it changes sign at most once.
-    form : Expr
-        What must vanish. Sums of terms with the unknown stand in it; all others are nodes.
-    value : Expr
-        The column's value in terms of the unknown.
-    requires : tuple of Boolean
-        The column's conditions, in their order.
-    positive : bool
-        Whether its value is positive although no double may hold it, by what is assumed of what it names.
-    steps : int
-        How many steps a row takes at most before it is bisected.
-    """
+    """A column of which each row is made of the only zero of an equation in an interval."""
 
     column: Column
     unknown: Symbol
     low: Expr
     high: Expr
     start: Expr
+    """`low`, `high` and `start`: the ends of the interval, and a first guess."""
     sign_low: Expr | None
     sign_high: Expr | None
+    """`sign_low` and `sign_high`: what has the equation's sign at the ends; None if it is evaluated there."""
     turning: tuple[Expr, ...]
+    """Points between which it changes sign at most once."""
     form: Expr
+    """What must vanish. Sums of terms with the unknown stand in it; all others are nodes."""
     value: Expr
+    """The column's value in terms of the unknown."""
     requires: tuple[Boolean, ...]
+    """The column's conditions, in their order."""
     positive: bool
+    """Whether its value is positive although no double may hold it, by what is assumed of what it names."""
     steps: int
+    """How many steps a row takes at most before it is bisected."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """Numbers for the rows of an axis that are no column.
-
-    Parameters
-    ----------
-    column : Column
-        Whose sums stand in them.
-    symbol : Symbol
-        What stands for them.
-    axis : Axis or None
-    value : Expr
-    """
+    """Numbers for the rows of an axis that are no column."""
 
     column: Column
+    """Whose sums stand in them."""
     symbol: Symbol
+    """What stands for them."""
     axis: Axis | None
     value: Expr
 
 
 @dataclass(frozen=True)
 class LoopNode:
-    """Columns that rest on one another: computed again and again until the iterated ones stay.
-
-    Parameters
-    ----------
-    columns : tuple of Column
-        The iterated ones, in their order.
-    starts : tuple of Node
-        What gives them their first values.
-    body : tuple of Node
-        A pass: the columns that are formulas, then the iterated ones, which name each other's last values.
-    """
+    """Columns that rest on one another: computed again and again until the iterated ones stay."""
 
     columns: tuple[Column, ...]
+    """The iterated ones, in their order."""
     starts: tuple[Node, ...]
+    """What gives them their first values."""
     body: tuple[Node, ...]
+    """A pass: the columns that are formulas, then the iterated ones, which name each other's last values."""
 
     @property
     def column(self) -> Column:
@@ -326,18 +253,12 @@ def expressions(node: Node) -> Iterator[Basic]:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is computed, in an order in which each node finds what it names.
-
-    Parameters
-    ----------
-    nodes : tuple of Node
-        The totals of a column come right before it.
-    leaves : mapping of Symbol to Leaf
-        What every symbol stands for, but the unknowns of roots.
-    """
+    """What is computed, in an order in which each node finds what it names."""
 
     nodes: tuple[Node, ...]
+    """The totals of a column come right before it."""
     leaves: Mapping[Symbol, Leaf]
+    """What every symbol stands for, but the unknowns of roots."""
 
     @cached_property
     def own(self) -> dict[str, Symbol]:
@@ -379,10 +300,7 @@ class Plan:
     def alone(self, name: str) -> Plan:
         """What the values of a column rest on, and nothing that only says whether there are any.
 
-        Parameters
-        ----------
-        name : str
-            Of a column of a plan without loops.
+        `name`: of a column of a plan without loops.
         """
         nodes, wanted = list[Node](), {name}
         for node in reversed(self.nodes):

@@ -15,54 +15,36 @@ __all__ = ["Local", "Slope", "unknown_of", "with_unknowns"]
 
 @dataclass(frozen=True)
 class Slope:
-    """The derivative of a node by what it names.
-
-    Parameters
-    ----------
-    by : str
-        A column or a total.
-    axis, index : str or None
-        For cells of a column with rows, the axis whose rows name them, and the index by which they do; no
-        index if they stand on the same rows.
-    value : str
-        The part that holds it, on the rows of the node; for a total, on those that it runs over.
-    """
+    """The derivative of a node by what it names."""
 
     by: str
+    """A column or a total."""
     axis: str | None
     index: str | None
+    """`axis` and `index`: for cells of a column with rows, the axis whose rows name them, and the index by
+    which they do; no index if they stand on the same rows."""
     value: str
+    """The part that holds it, on the rows of the node; for a total, on those that it runs over."""
 
 
 @dataclass(frozen=True)
 class Local:
-    """A node with its derivatives by what it names itself.
-
-    Parameters
-    ----------
-    name : str
-        Of the column; for a total, of its symbol.
-    axis : str or None
-        None for a scalar, and for a total that is no group's.
-    over : str or None
-        The axis that a total runs over.
-    of : str
-        The column in whose rule it stands.
-    rounding : str
-        The part that holds its rounding in SI, in units of eps; empty if it was not asked for.
-    slopes : tuple of Slope
-    word : str
-        What a total takes, empty for columns: where it is no sum, only the slopes of the rows that it takes
-        count.
-    """
+    """A node with its derivatives by what it names itself."""
 
     name: str
+    """Of the column; for a total, of its symbol."""
     axis: str | None
+    """None for a scalar, and for a total that is no group's."""
     over: str | None
+    """The axis that a total runs over."""
     of: str
+    """The column in whose rule it stands."""
     rounding: str
+    """The part that holds its rounding in SI, in units of eps; empty if it was not asked for."""
     slopes: tuple[Slope, ...]
     word: Word | Literal[""]
+    """What a total takes, empty for columns: where it is no sum, only the slopes of the rows that it takes
+    count."""
 
     @property
     def by_order(self) -> bool:

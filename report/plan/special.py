@@ -23,12 +23,7 @@ DOUBLE, EXACT = 18, 60
 def in_elementary_terms(expression: Any, digits: int = DOUBLE) -> Any:
     """An expression without beta functions.
 
-    Parameters
-    ----------
-    expression : Basic
-        Its beta functions are B(a, 1/2), a > 0.
-    digits : int
-        How many are right.
+    `expression`: its beta functions are B(a, 1/2), a > 0. `digits`: how many are right.
     """
     if not expression.has(beta):
         return expression

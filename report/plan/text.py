@@ -12,11 +12,7 @@ __all__ = ["text"]
 def text(plan: Plan, columns: Collection[str] | None = None) -> str:
     """Write a plan, or the nodes of some columns.
 
-    Parameters
-    ----------
-    plan : Plan
-    columns : collection of str, optional
-        All of them, if it is left out.
+    `columns`: all of them, if it is left out.
     """
     nodes = [node for node in plan.nodes if columns is None or _names(node) & set(columns)]
     lines = [line for node in nodes for line in _node(plan, node)]

@@ -32,42 +32,28 @@ Words = Mapping[str, str]
 
 @dataclass(frozen=True)
 class RowChange:
-    """A row of the table that is written anew.
-
-    Parameters
-    ----------
-    line : int
-        Where it begins, counted from 1.
-    before, after : str
-        The row as it stands in the file.
-    """
+    """A row of the table that is written anew."""
 
     line: int
+    """Where it begins, counted from 1."""
     before: str
     after: str
+    """`before` and `after`: the row as it stands in the file."""
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """What becomes of published.csv.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    before, after : bytes
-        All of it.
-    changes : tuple of RowChange
-        The rows whose words change, the first line among them if it names another column.
-    others : int
-        How many rows only get an empty field, because a column is new.
-    """
+    """What becomes of published.csv."""
 
     path: Path
+    """The file."""
     before: bytes
     after: bytes
+    """`before` and `after`: all of it."""
     changes: tuple[RowChange, ...] = ()
+    """The rows whose words change, the first line among them if it names another column."""
     others: int = 0
+    """How many rows only get an empty field, because a column is new."""
 
 
 def accepted(report: Report, reason: str = "") -> Accepted:
@@ -76,12 +62,8 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     A difference that nobody has announced becomes a known one only if there is a reason for it. One that is
     none any more is taken back, with all that was said of it.
 
-    Parameters
-    ----------
-    report : Report
-        Refereed: what is reachable is no difference. It has published values.
-    reason : str
-        Why they differ, for the rows that do not say it.
+    `report`: refereed: what is reachable is no difference. It has published values. `reason`: why they
+    differ, for the rows that do not say it.
     """
     place = report.every_comparison[0].published.places["value"]
     name = report.every_comparison[0].published.where.rsplit(":", 2)[0]

@@ -34,34 +34,22 @@ FREE = 1e15
 
 @dataclass(frozen=True)
 class Unknown:
-    """A given cell.
-
-    Parameters
-    ----------
-    column : str
-    row : int
-    index : tuple of int
-        How the row is called.
-    printed : Printed or None
-        None for what is not printed.
-    start : float
-        Its value in SI as printed, or as recomputed.
-    allowed : Bounds
-        What it may be, whatever is printed.
-    held : float
-        How far from what is printed it may be at most, in SI, whatever its digits allow.
-    reach : float
-        How far from what is printed it may be all the same, in SI.
-    """
+    """A given cell."""
 
     column: str
     row: int
     index: tuple[int, ...]
+    """How the row is called."""
     printed: Printed | None
+    """None for what is not printed."""
     start: float
+    """Its value in SI as printed, or as recomputed."""
     allowed: Bounds = field(default_factory=Bounds)
+    """What it may be, whatever is printed."""
     held: float = inf
+    """How far from what is printed it may be at most, in SI, whatever its digits allow."""
     reach: float = 0.0
+    """How far from what is printed it may be all the same, in SI."""
 
     def interval(self, printed: Printed | None = None, mode: str = "") -> tuple[float, float]:
         """Where it may lie, in SI, by its digits and by what is stated of it; or if it were printed so."""
@@ -97,31 +85,20 @@ class Programs:
 
 @dataclass(frozen=True)
 class Campaign:
-    """A report's sheet and inputs, as the referee asks them.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    inputs : Inputs
-    values : Values
-        As recomputed from what is printed.
-    data : mapping of column name to float or sequence of float
-        The given columns in SI.
-    free : tuple of str
-        Columns that the publication does not print: given or computed, they may have any value.
-    made : Programs
-        Of the sheet; campaigns with other inputs share them.
-    stated : bool
-        Whether an input may be as far from its print as the uncertainties reach that are stated of it.
-    """
+    """A report's sheet and inputs, as the referee asks them."""
 
     sheet: Sheet
     inputs: Inputs
     values: Values
+    """As recomputed from what is printed."""
     data: Mapping[str, Any]
+    """By column name; the given columns in SI."""
     free: tuple[str, ...] = ()
+    """Columns that the publication does not print: given or computed, they may have any value."""
     made: Programs = field(default_factory=Programs, repr=False)
+    """Of the sheet; campaigns with other inputs share them."""
     stated: bool = False
+    """Whether an input may be as far from its print as the uncertainties reach that are stated of it."""
 
     @cached_property
     def spread(self) -> Spread:

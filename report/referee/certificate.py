@@ -23,13 +23,7 @@ MOST = 1 << 24
 
 
 class _Enclosed:
-    """The cells of a problem's sheet over a box, whatever was published.
-
-    Parameters
-    ----------
-    problem : Problem
-    box : Box
-    """
+    """The cells of a problem's sheet over a box, whatever was published."""
 
     def __init__(self, problem: Problem, box: Box) -> None:
         self.problem, self.box = problem, box
@@ -80,17 +74,11 @@ def _enclosure(problem: Problem, low: Array, high: Array) -> Enclosure:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Bounds that hold for every input in a box.
-
-    Parameters
-    ----------
-    problem : Problem
-    box : Box or None
-        That of the printed digits, if left out.
-    """
+    """Bounds that hold for every input in a box."""
 
     problem: Problem
     box: Box | None = None
+    """That of the printed digits, if left out."""
 
     @cached_property
     def _enclosed(self) -> _Enclosed:
@@ -150,10 +138,7 @@ class Certificate:
         Whatever the weights w, whose sizes sum to W, the worst of the mismatches r_k is at least
         sum(w_k r_k) / W; the sum is bounded by its own mean-value form, so that what cancels in it cancels.
 
-        Parameters
-        ----------
-        weights : float array (published,)
-            Best those of the linear program that could not do better.
+        `weights` (float array (published,)): best those of the linear program that could not do better.
         """
         own = weights[self._plain]
         which = np.flatnonzero(np.abs(own) > 1e-9)

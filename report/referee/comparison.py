@@ -42,7 +42,6 @@ def print_as(value: float, like: Printed) -> str:
     ----------
     value : float
         In SI.
-    like : Printed
 
     Examples
     --------
@@ -110,12 +109,7 @@ def missing_as_expected(cell: Cell, values: Values, expected: Sequence[Expectati
 def beside(published: PublishedValue, cell: Cell, *, expected: bool = False) -> Comparison:
     """Set a published number beside a cell that holds what is computed.
 
-    Parameters
-    ----------
-    published : PublishedValue
-    cell : Cell
-    expected : bool
-        Whether it is expected that the cell has no value.
+    `expected`: whether it is expected that the cell has no value.
     """
     printed = published.printed
     if cell.value is None:

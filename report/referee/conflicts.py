@@ -20,27 +20,16 @@ __all__ = ["Conflict", "Conflicts"]
 
 @dataclass(frozen=True)
 class Conflict:
-    """Published values that do not come out together.
-
-    Parameters
-    ----------
-    values : frozenset of int
-        Their places among the problem's.
-    certain : bool
-        Whether a certificate says that no input yields them.
-    """
+    """Published values that do not come out together."""
 
     values: frozenset[int]
+    """Their places among the problem's."""
     certain: bool
+    """Whether a certificate says that no input yields them."""
 
 
 class Conflicts:
-    """The conflicts of a problem, as they are found.
-
-    Parameters
-    ----------
-    problem : Problem
-    """
+    """The conflicts of a problem, as they are found."""
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem

@@ -75,21 +75,14 @@ def explanations(
 
 @dataclass(frozen=True)
 class Doubts:
-    """What is likelier to be wrong than other numbers, and what less likely.
-
-    Parameters
-    ----------
-    alone : int or None
-        The place of the published value that alone does not print as it is recomputed, if there is one.
-    its : tuple
-        Its source, column and index.
-    exact : set of (str, tuple of int)
-        Given cells that are known to be what they are printed as.
-    """
+    """What is likelier to be wrong than other numbers, and what less likely."""
 
     alone: int | None = None
+    """The place of the published value that alone does not print as it is recomputed, if there is one."""
     its: tuple[str, str, tuple[int, ...]] | None = None
+    """Its source, column and index."""
     exact: frozenset[tuple[str, tuple[int, ...]]] = frozenset()
+    """Given cells that are known to be what they are printed as."""
 
     @classmethod
     def of(cls, problem: Problem) -> Doubts:

@@ -61,8 +61,6 @@ def referee(
 
     Parameters
     ----------
-    sheet : Sheet
-    inputs : Inputs
     values : Values
         As recomputed from what is printed.
     data : mapping of column name to float or sequence of float

@@ -32,27 +32,19 @@ SAMPLES = 128
 
 @dataclass(frozen=True)
 class Best:
-    """The best point that was found.
-
-    Parameters
-    ----------
-    point : float array (unknowns,)
-    cells : float array (published,)
-        The published cells there, in SI.
-    mismatch : float
-        The worst of them, in half units of the last digit; infinite if some have no value.
-    weights : float array (published,)
-        How much each value presses against the bound, and to which side: the multipliers of the last
-        linear program, whose sizes sum to 1.
-    promised : float
-        What that program promised.
-    """
+    """The best point that was found."""
 
     point: Array
+    """Of shape (unknowns,)."""
     cells: Array
+    """Of shape (published,); the published cells there, in SI."""
     mismatch: float
+    """The worst of them, in half units of the last digit; infinite if some have no value."""
     weights: Array
+    """Of shape (published,); how much each value presses against the bound, and to which side: the
+    multipliers of the last linear program, whose sizes sum to 1."""
     promised: float = 0.0
+    """What that program promised."""
 
     @property
     def pressing(self) -> NDArray[np.intp]:
@@ -70,7 +62,6 @@ def best(
 
     Parameters
     ----------
-    problem : Problem
     box : Box, optional
         That of the printed digits, if left out.
     until : float
@@ -90,12 +81,7 @@ def best(
 def counted(problem: Problem, found: Best, box: Box | None = None) -> Best:
     """What a search found, with its roots counted: it may be told. If they refute it, what else there is.
 
-    Parameters
-    ----------
-    problem : Problem
-    found : Best
-    box : Box, optional
-        That it was sought in.
+    `box`: that it was sought in.
     """
     if problem.guessing is problem or not np.isfinite(found.mismatch):
         return found
@@ -145,18 +131,12 @@ def _sought(problem: Problem, box: Box, until: float = 0.0, unless: float = np.i
 
 @dataclass(frozen=True)
 class _Counted:
-    """The unknowns as a search counts them: in their intervals; in logarithms where these are wide.
-
-    Parameters
-    ----------
-    log : boolean array (unknowns,)
-        Which may differ by orders of magnitude.
-    scale : float array (unknowns,)
-        What a unit of each is; none for what cannot move.
-    """
+    """The unknowns as a search counts them: in their intervals; in logarithms where these are wide."""
 
     log: NDArray[np.bool_]
+    """Of shape (unknowns,); which may differ by orders of magnitude."""
     scale: Array
+    """Of shape (unknowns,); what a unit of each is; none for what cannot move."""
 
     @classmethod
     def of(cls, box: Box, point: Array) -> _Counted:
@@ -189,7 +169,6 @@ def meet(problem: Problem, box: Box | None = None, found: Best | None = None, un
 
     Parameters
     ----------
-    problem : Problem
     box : Box, optional
         That of the printed digits, if left out.
     found : Best, optional

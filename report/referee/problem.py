@@ -35,19 +35,13 @@ ENOUGH = 1e-6
 
 @dataclass(frozen=True)
 class Box:
-    """Where the unknowns may lie.
-
-    Parameters
-    ----------
-    low, high : float arrays (unknowns,)
-        In SI, ends included.
-    start : float array (unknowns,)
-        Where a search begins.
-    """
+    """Where the unknowns may lie."""
 
     low: Array
     high: Array
+    """`low` and `high`: of shape (unknowns,); in SI, ends included."""
     start: Array
+    """Of shape (unknowns,); where a search begins."""
 
     @property
     def width(self) -> Array:
@@ -72,27 +66,17 @@ class Here(NamedTuple):
 
 @dataclass(frozen=True)
 class Problem:
-    """Published values that shall come out together.
-
-    Parameters
-    ----------
-    campaign : Campaign
-    program : Program
-        Of the columns that they rest on, what is free being given.
-    unknowns : tuple of Unknown
-    published : tuple of PublishedValue
-    ways : tuple of (Way or None)
-        How each of them is computed; None for what follows the sheet.
-    ignored : frozenset of int
-        Places of published values that need not come out.
-    """
+    """Published values that shall come out together."""
 
     campaign: Campaign
     program: Program
+    """Of the columns that they rest on, what is free being given."""
     unknowns: tuple[Unknown, ...]
     published: tuple[PublishedValue, ...]
     ways: tuple[Way | None, ...]
+    """How each of them is computed; None for what follows the sheet."""
     ignored: frozenset[int] = frozenset()
+    """Places of published values that need not come out."""
 
     @classmethod
     def of(
@@ -104,14 +88,8 @@ class Problem:
     ) -> Problem:
         """Ask for published values together.
 
-        Parameters
-        ----------
-        campaign : Campaign
-        published : sequence of PublishedValue
-        tied : sequence of str
-            Free columns that shall follow from the others all the same.
-        asked : sequence of str
-            Conventions of the workbook that are asked for too.
+        `tied`: free columns that shall follow from the others all the same. `asked`: conventions of the
+        workbook that are asked for too.
         """
         cut = tuple(name for name in campaign.free if name not in tied)
         program = campaign.program({value.cell for value in published}, cut)

@@ -23,15 +23,7 @@ LOOKED_INTO = 6
 
 @dataclass(frozen=True)
 class Explained:
-    """An explanation, and the problem as it would be.
-
-    Parameters
-    ----------
-    explanation : Explanation
-    problem : Problem
-    box : Box
-    best : Best
-    """
+    """An explanation, and the problem as it would be."""
 
     explanation: Explanation
     problem: Problem
@@ -86,13 +78,8 @@ class Search:
     def met(self, problem: Problem, box: Box | None = None, wide: bool = False) -> Best | None:
         """An input that yields all values of a changed problem; None, and counted, if there is none.
 
-        Parameters
-        ----------
-        problem : Problem
-        box : Box, optional
-            That of the printed digits, if left out.
-        wide : bool
-            Whether the box is so wide that nothing is certain in it.
+        `box`: that of the printed digits, if left out. `wide`: whether the box is so wide that nothing is
+        certain in it.
         """
         found = best(problem, box)
         if found.mismatch > 1:

@@ -35,13 +35,7 @@ def compare_uncertainties(
 ) -> tuple[Comparison, ...]:
     """Set everything that is published of uncertainties beside what is computed.
 
-    Parameters
-    ----------
-    inputs : Inputs
-    values : Values
-        All columns, without a batch.
-    step : callable
-        Told what is begun.
+    `values`: all columns, without a batch. `step`: told what is begun.
     """
     if not inputs.published_u:
         return ()

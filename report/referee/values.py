@@ -27,13 +27,7 @@ CLOSE = 0.1
 
 
 def verdicts(campaign: Campaign, published: Sequence[PublishedValue]) -> tuple[Verdict, ...]:
-    """Judge every published value by itself.
-
-    Parameters
-    ----------
-    campaign : Campaign
-    published : sequence of PublishedValue
-    """
+    """Judge every published value by itself."""
     found: dict[int, Verdict] = {}
     groups: dict[str, list[int]] = {}
     for n, value in enumerate(published):

@@ -20,24 +20,16 @@ __all__ = ["Way", "from_printed", "over_rows"]
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """A program of its own for some published values.
-
-    Parameters
-    ----------
-    program : Program
-        What is computed from columns that are given to it.
-    labels : mapping of axis name to sequence of int
-        Row numbers of the axes that come with the data.
-    printed : mapping of column name to float array (rows,)
-        Columns that are taken as they are printed, in SI.
-    rows : mapping of column name to integer array
-        Columns of which some rows are taken as the sheet computes them.
-    """
+    """A program of its own for some published values."""
 
     program: Program
+    """What is computed from columns that are given to it."""
     labels: Mapping[str, Sequence[int]]
+    """By axis name; row numbers of the axes that come with the data."""
     printed: Mapping[str, Array] = field(default_factory=dict)
+    """Of shape (rows,), by column name; columns that are taken as they are printed, in SI."""
     rows: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
+    """By column name; columns of which some rows are taken as the sheet computes them."""
 
     @cached_property
     def guessing(self) -> Way:
@@ -56,12 +48,7 @@ class Way:
 def from_printed(campaign: Campaign, cells: Sequence[str], printed: Mapping[str, Array]) -> Way:
     """Compute cells from columns as they are printed, the rest as the sheet says.
 
-    Parameters
-    ----------
-    campaign : Campaign
-    cells : sequence of str
-    printed : mapping of column name to float array (rows,)
-        In SI.
+    `printed` (mapping of column name to float array (rows,)): in SI.
     """
     cut = tuple(name for name in (*campaign.free, *printed) if name not in cells)
     program = campaign.program(cells, tuple(dict.fromkeys(cut)))
@@ -72,14 +59,8 @@ def from_printed(campaign: Campaign, cells: Sequence[str], printed: Mapping[str,
 def over_rows(column: Column, axis: Axis, every: Sequence[NDArray[np.intp]], sheet: Sheet) -> list[Way]:
     """Compute a sum or mean over other rows than all.
 
-    Parameters
-    ----------
-    column : Column
-        Its rule sums over the axis.
-    axis : Axis
-    every : sequence of integer array
-        Rows, of which one may come twice: a way for each.
-    sheet : Sheet
+    `column`: its rule sums over the axis. `every` (sequence of integer array): rows, of which one may come
+    twice: a way for each.
     """
     given = [
         Column(c.name, axis.alone if c.axis == axis else None, Given(), c.unit, positive=c.positive)

@@ -21,48 +21,33 @@ class Agreement:
     For given inputs `cells` is the same everywhere. Differences depend on the machine: NumPy takes another
     logarithm on another processor, and the programs are whatever is installed. A report therefore has
     NumPy's alone unless the others are asked for.
-
-    Parameters
-    ----------
-    cells : int
-        How many were compared.
-    worst : float
-        Largest difference, relative to the largest cell of its column, and for a pure number that may
-        vanish to 1 at least: a logarithm near zero has no relative precision.
-    where : str
-        The cell of the largest such difference.
-    findings : tuple of str
-        Cells that differ in status, or by more than :data:`LIMIT`; why the engine failed.
-    units : float
-        Largest difference in eps times condition.
-    units_where : str
-        The cell of that one.
-    engine : str
-        ``numpy``, ``JavaScript``, ``xlsx``.
-    program : str
-        What ran it, ``node 20.19``; empty if it needs none.
-    missing : str
-        The program that is not installed: then nothing was compared, and nothing is wrong.
-    unbounded : int
-        Cells whose condition is infinite, such as a square root of zero: only their status is judged.
-    of : int
-        How many cells the report has, if these are those of a sample; else 0.
-    sample : str
-        What the sample is: ``14 of 200 tests``.
     """
 
     cells: int
+    """How many were compared."""
     worst: float
+    """Largest difference, relative to the largest cell of its column, and for a pure number that may vanish
+    to 1 at least: a logarithm near zero has no relative precision."""
     where: str
+    """The cell of the largest such difference."""
     findings: tuple[str, ...]
+    """Cells that differ in status, or by more than :data:`LIMIT`; why the engine failed."""
     units: float = 0.0
+    """Largest difference in eps times condition."""
     units_where: str = ""
+    """The cell of that one."""
     engine: str = "numpy"
+    """``numpy``, ``JavaScript``, ``xlsx``."""
     program: str = ""
+    """What ran it, ``node 20.19``; empty if it needs none."""
     missing: str = ""
+    """The program that is not installed: then nothing was compared, and nothing is wrong."""
     unbounded: int = 0
+    """Cells whose condition is infinite, such as a square root of zero: only their status is judged."""
     of: int = 0
+    """How many cells the report has, if these are those of a sample; else 0."""
     sample: str = ""
+    """What the sample is: ``14 of 200 tests``."""
 
     @property
     def counted(self) -> str:

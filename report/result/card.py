@@ -58,50 +58,35 @@ class Prescribed(NamedTuple):
 
 @dataclass(frozen=True)
 class Card:
-    """Parameters for the contact formula of a code, in SI where nothing else is said.
-
-    Parameters
-    ----------
-    of : str
-        The title of the report that it was made from.
-    name, title, version : str
-        The word for the code, program and model, and what version of it was read.
-    sources : tuple of str
-        Where its formula stands.
-    formula : str
-        The force while the approach grows, in the code's own words, and after that if it is another one.
-    typed : tuple of TypedValue
-    snippet : str
-        How it is written in an input of the code.
-    mass, speed : float
-        The reduced mass and the impact speed that the card is for.
-    wanted, returned : Behaviour
-        What was measured at that speed (of other speeds: between neighbours), its approach by the identified
-        law; and what the formula returns with what is typed.
-    rows : tuple of CardRow
-    prescribed : tuple of Prescribed
-        What it returns for restitutions from near 0 to near 1; empty if none is typed in.
-    notes : tuple of str
-    oddities : tuple of Check
-        What is told of the data that it was made from.
-    """
+    """Parameters for the contact formula of a code, in SI where nothing else is said."""
 
     of: str
+    """The title of the report that it was made from."""
     name: str
     title: str
     version: str
+    """`name`, `title` and `version`: the word for the code, program and model, and what version of it was
+    read."""
     sources: tuple[str, ...]
+    """Where its formula stands."""
     formula: str
+    """The force while the approach grows, in the code's own words, and after that if it is another one."""
     typed: tuple[TypedValue, ...]
     snippet: str
+    """How it is written in an input of the code."""
     mass: float
     speed: float
+    """`mass` and `speed`: the reduced mass and the impact speed that the card is for."""
     wanted: Behaviour
     returned: Behaviour
+    """`wanted` and `returned`: what was measured at that speed (of other speeds: between neighbours), its
+    approach by the identified law; and what the formula returns with what is typed."""
     rows: tuple[CardRow, ...]
     prescribed: tuple[Prescribed, ...]
+    """What it returns for restitutions from near 0 to near 1; empty if none is typed in."""
     notes: tuple[str, ...]
     oddities: tuple[Check, ...] = ()
+    """What is told of the data that it was made from."""
 
     @property
     def solved(self) -> bool:
@@ -146,22 +131,13 @@ class NoCard(NamedTuple):
 
 @dataclass(frozen=True)
 class Cards:
-    """The cards of a report.
-
-    Parameters
-    ----------
-    made : tuple of Card
-    measured : tuple of Point
-        The impacts that they are held to.
-    refused : tuple of NoCard
-    laws : mapping of str to tuple of Prescribed
-        What damping numbers return, by their author.
-    notes : tuple of str
-        What is told of all of them.
-    """
+    """The cards of a report."""
 
     made: tuple[Card, ...] = ()
     measured: tuple[Point, ...] = ()
+    """The impacts that they are held to."""
     refused: tuple[NoCard, ...] = ()
     laws: Mapping[str, tuple[Prescribed, ...]] = field(default_factory=dict)
+    """What damping numbers return, by their author."""
     notes: tuple[str, ...] = ()
+    """What is told of all of them."""

@@ -41,7 +41,6 @@ def tail(chi2: float, dof: int, known_by: float = math.inf) -> float:
 
     Parameters
     ----------
-    chi2 : float
     dof : int
         At least 1.
     known_by : float

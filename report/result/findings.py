@@ -86,11 +86,7 @@ def of_engine(agreement: Agreement, inputs: Inputs) -> Check:
 def of_comparison(comparison: Comparison, name: str) -> Check:
     """Whether a published value is what is expected of it.
 
-    Parameters
-    ----------
-    comparison : Comparison
-    name : str
-        As from :func:`names_of`.
+    `name`: as from :func:`names_of`.
     """
     published, cell = comparison.published, comparison.cell
     said = f"{published.source} {cell.address} prints {published.printed.text}"

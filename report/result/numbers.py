@@ -49,23 +49,15 @@ RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 @dataclass(frozen=True)
 class Numeral:
-    """A number as it is shown.
-
-    Parameters
-    ----------
-    negative : bool
-    whole : str
-        Digits before the decimal point.
-    fraction : str
-        Digits behind it.
-    exponent : int or None
-        The power of ten that it is multiplied by; None if none is written.
-    """
+    """A number as it is shown."""
 
     negative: bool
     whole: str
+    """Digits before the decimal point."""
     fraction: str
+    """Digits behind it."""
     exponent: int | None = None
+    """The power of ten that it is multiplied by; None if none is written."""
 
     @property
     def plain(self) -> str:

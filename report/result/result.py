@@ -41,25 +41,17 @@ __all__ = ["Comparison", "Plotted", "Report", "Shown"]
 
 @dataclass(frozen=True)
 class Shown:
-    """How a column is shown.
-
-    Parameters
-    ----------
-    unit : str
-        The unit it is shown in, as text; ``1`` for a pure number.
-    scale : float
-        One such unit in SI.
-    zero : float
-        Zero of that unit in SI: 273.15 for ``degC``.
-    digits : int
-        Significant digits of a cell whose uncertainty is not known: one more than the least precise input
-        behind it.
-    """
+    """How a column is shown."""
 
     unit: str
+    """The unit it is shown in, as text; ``1`` for a pure number."""
     scale: float
+    """One such unit in SI."""
     digits: int
+    """Significant digits of a cell whose uncertainty is not known: one more than the least precise input
+    behind it."""
     zero: float = 0.0
+    """Zero of that unit in SI: 273.15 for ``degC``."""
 
     def of(self, value: Any) -> Any:
         """A value in SI, or an array of them, in that unit; of a difference only its scale is asked."""
@@ -77,51 +69,34 @@ class Shown:
 
 @dataclass(frozen=True)
 class Plotted:
-    """What charts are drawn from.
-
-    Parameters
-    ----------
-    values : Values
-        Of the sheet and of the columns that only charts ask for.
-    shown : mapping of column name to Shown
-        The same for both.
-    """
+    """What charts are drawn from."""
 
     values: Values
+    """Of the sheet and of the columns that only charts ask for."""
     shown: Mapping[str, Shown]
+    """By column name; the same for both."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published value beside its recomputation.
-
-    Parameters
-    ----------
-    published : PublishedValue
-        What was printed, and whether a difference is expected.
-    cell : Cell
-        The recomputed cell.
-    again : str
-        The recomputed value, printed as the published one is: same unit, same decimals.
-    distance : float or None
-        Recomputed minus published, in units of the last printed digit; None where there is no value.
-    verdict : str
-        ``same`` (prints the same), ``differs`` or ``not-checkable`` (the cell has no value).
-    finding : str
-        What is not as expected, in a word of :mod:`~loopsheet.report.result.verdict`; empty if all is. What
-        the referee found reachable differs by no more than the printed digits of the inputs allow, and is
-        no finding.
-    refereed : Verdict or None
-        What the referee says of it; None if it was not asked.
-    """
+    """A published value beside its recomputation."""
 
     published: PublishedValue
+    """What was printed, and whether a difference is expected."""
     cell: Cell
+    """The recomputed cell."""
     again: str
+    """The recomputed value, printed as the published one is: same unit, same decimals."""
     distance: float | None
+    """Recomputed minus published, in units of the last printed digit; None where there is no value."""
     verdict: str
+    """``same`` (prints the same), ``differs`` or ``not-checkable`` (the cell has no value)."""
     finding: str
+    """What is not as expected, in a word of :mod:`~loopsheet.report.result.verdict`; empty if all is. What
+    the referee found reachable differs by no more than the printed digits of the inputs allow, and is no
+    finding."""
     refereed: Verdict | None = None
+    """What the referee says of it; None if it was not asked."""
 
     @property
     def as_expected(self) -> bool:
@@ -158,70 +133,47 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Report:
-    """All that is known after the sheet has been computed.
-
-    Parameters
-    ----------
-    title : str
-    workbook : Workbook
-    inputs : Inputs
-        As the user gave them, with the digits as printed.
-    sheet : Sheet
-    values : Values
-        Every cell, in SI, without a batch dimension.
-    marks : Marks
-        Which of them lie outside of what is expected.
-    exactly : ExactValues or None
-        Every cell at 50 digits, for the judge of the engines; then `values` and `marks` are these, rounded
-        to the nearest doubles. None where the sheet is too large for that: then they are NumPy's.
-    shown : mapping of column name to Shown
-    algebra : callable
-        Returns the ledger.
-    proofs : tuple of Proof
-        One for each equation of the ledger, in its order.
-    errata : tuple of Erratum
-        Findings about the source's print, each made by a check.
-    comparisons : tuple of Comparison
-        In the order of published.csv.
-    comparisons_u : tuple of Comparison
-        The same of what is published of uncertainties, each with a cell of its own; empty before the referee
-        was asked.
-    plotted : callable
-        Computes what charts ask for besides.
-    uncertain : callable
-        Computes the standard uncertainties of the cells.
-    engines : tuple of Agreement
-        What the judge of the engines found, NumPy first; empty if it was not asked.
-    oddities : tuple of Check
-        Whether the data of the campaign itself are as expected.
-    referee : Referee
-        What the referee found; empty if it was not asked.
-    versions : mapping of str to str
-        What computed it: this program and its libraries.
-    cards : callable
-        Makes the cards for simulation codes that the folder asks for.
-    """
+    """All that is known after the sheet has been computed."""
 
     title: str
     workbook: Workbook
     inputs: Inputs
+    """As the user gave them, with the digits as printed."""
     sheet: Sheet
     values: Values
+    """Every cell, in SI, without a batch dimension."""
     marks: Marks
+    """Which of them lie outside of what is expected."""
     exactly: ExactValues | None
+    """Every cell at 50 digits, for the judge of the engines; then `values` and `marks` are these, rounded to
+    the nearest doubles. None where the sheet is too large for that: then they are NumPy's."""
     shown: Mapping[str, Shown]
+    """By column name."""
     algebra: Callable[[], Ledger]
+    """Returns the ledger."""
     proofs: tuple[Proof, ...]
+    """One for each equation of the ledger, in its order."""
     errata: tuple[Erratum, ...]
+    """Findings about the source's print, each made by a check."""
     comparisons: tuple[Comparison, ...]
+    """In the order of published.csv."""
     plotted: Callable[[], Plotted]
+    """Computes what charts ask for besides."""
     uncertain: Callable[[], Uncertainties]
+    """Computes the standard uncertainties of the cells."""
     engines: tuple[Agreement, ...] = ()
+    """What the judge of the engines found, NumPy first; empty if it was not asked."""
     oddities: tuple[Check, ...] = ()
+    """Whether the data of the campaign itself are as expected."""
     referee: Referee = field(default_factory=Referee)
+    """What the referee found; empty if it was not asked."""
     versions: Mapping[str, str] = field(default_factory=dict)
+    """What computed it: this program and its libraries."""
     comparisons_u: tuple[Comparison, ...] = ()
+    """The same of what is published of uncertainties, each with a cell of its own; empty before the referee
+    was asked."""
     cards: Callable[[], Cards] = Cards
+    """Makes the cards for simulation codes that the folder asks for."""
     _figures: dict[str, tuple[Numeral | None, ...]] = field(default_factory=dict, init=False, compare=False)
 
     @property

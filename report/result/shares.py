@@ -24,7 +24,6 @@ def shares(budget: Budget, inputs: Inputs) -> tuple[dict[str, float], dict[int, 
 
     Parameters
     ----------
-    budget : Budget
     inputs : Inputs
         That it is of.
 

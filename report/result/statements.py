@@ -31,11 +31,7 @@ def statements(report: Report) -> Iterator[tuple[str, str]]:
 def of_column(report: Report, name: str) -> str:
     """What is stated of a given column; empty if its digits have to say it.
 
-    Parameters
-    ----------
-    report : Report
-    name : str
-        Of a measured column or of a parameter.
+    `name`: of a measured column or of a parameter.
     """
     return "; ".join((*_own(report, name), *_shared(report, name), *_correlated(report, name)))
 

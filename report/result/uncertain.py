@@ -39,33 +39,22 @@ TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class ErrorSource:
-    """One error that is independent of all others, unless a correlation says otherwise.
-
-    Parameters
-    ----------
-    name : str
-        The address of the cell it is an error of, or the name of what cells share.
-    shape : Shape
-    dof : float
-        Degrees of freedom; infinite where its standard uncertainty is known.
-    moves : tuple of (str, int, float)
-        Columns and rows that it is an error of, and its standard uncertainty there, in SI.
-    said : str
-        How it was stated; empty if it follows from printed digits.
-    sample, law
-        As of :class:`~loopsheet.report.distribution.Error`.
-    origin : tuple of str or None
-        What it is in the report that stated it, where that is another one.
-    """
+    """One error that is independent of all others, unless a correlation says otherwise."""
 
     name: str
+    """The address of the cell it is an error of, or the name of what cells share."""
     shape: Shape
     dof: float
+    """Degrees of freedom; infinite where its standard uncertainty is known."""
     moves: tuple[tuple[str, int, float], ...]
+    """Columns and rows that it is an error of, and its standard uncertainty there, in SI."""
     said: str = ""
+    """How it was stated; empty if it follows from printed digits."""
     sample: str = ""
     law: Law | None = None
+    """`sample` and `law`: as of :class:`~loopsheet.report.distribution.Error`."""
     origin: Origin | None = None
+    """What it is in the report that stated it, where that is another one."""
 
     @property
     def u(self) -> float | None:
@@ -81,26 +70,17 @@ class ErrorSource:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What one source does to a cell.
-
-    Parameters
-    ----------
-    source : ErrorSource
-    estimate : float or None
-        The value it is an error of, in SI; None if there are several.
-    unit : str
-        The SI unit of estimate and uncertainty.
-    u : float
-        To first order, with the sign of the sensitivity, in the SI unit of the cell.
-    share : float
-        Of the variance of the cell; all of them together are 1. With correlations it may be negative.
-    """
+    """What one source does to a cell."""
 
     source: ErrorSource
     estimate: float | None
+    """The value it is an error of, in SI; None if there are several."""
     unit: str
+    """The SI unit of estimate and uncertainty."""
     u: float
+    """To first order, with the sign of the sensitivity, in the SI unit of the cell."""
     share: float
+    """Of the variance of the cell; all of them together are 1. With correlations it may be negative."""
 
     @property
     def sensitivity(self) -> float | None:
@@ -110,18 +90,12 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Together:
-    """How much the cells of a column that is summed tell together: they may rest on the same errors.
-
-    Parameters
-    ----------
-    name : str
-        Of the column.
-    eigenvalues : tuple of float
-        Of the correlation matrix of its cells, the largest first; that many ones if all are independent.
-    """
+    """How much the cells of a column that is summed tell together: they may rest on the same errors."""
 
     name: str
+    """Of the column."""
     eigenvalues: tuple[float, ...]
+    """Of the correlation matrix of its cells, the largest first; that many ones if all are independent."""
 
     @property
     def rank(self) -> int:
@@ -131,65 +105,45 @@ class Together:
 
 @dataclass(frozen=True)
 class Budget:
-    """The uncertainty of one cell and where it comes from (JCGM 100, 5 and annex H).
-
-    Parameters
-    ----------
-    cell : str
-        Its address.
-    name, label
-        Its column, and the label of its row.
-    value, u : float
-        In SI; `u` is the combined standard uncertainty, NaN where nothing is known of it.
-    contributions : tuple of Contribution
-        The largest first; what does nothing is left out.
-    correlations : mapping of (str, str) to float
-        Between these sources.
-    dof : float
-        Effective degrees of freedom by the formula of Welch and Satterthwaite, rounded to two decimals, then
-        truncated; NaN where correlated sources have a finite number.
-    level : float
-        Coverage probability.
-    factor : float
-        Coverage factor; NaN where there are no degrees of freedom.
-    because : str
-        What the coverage factor was taken from.
-    second : float
-        The part of the variance that is of second order, in the square of the cell's SI unit; 0 where first
-        order is enough.
-    unlooked : str
-        Why nothing is known of second order; empty if it was looked at.
-    shape : Shape
-        The distribution that is assigned to it: normal, Student's t, that of the sum of its errors, or that
-        of a source which dominates.
-    law : Law or None
-        As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value.
-    summed : tuple of Together
-        Columns over pairs of rows that the cell sums: pairs share their rows.
-    draws : int
-        So many told its distribution and the coverage factor; 0 where the errors' own did.
-    least : float
-        What the quantity cannot fall below, in SI.
-    """
+    """The uncertainty of one cell and where it comes from (JCGM 100, 5 and annex H)."""
 
     cell: str
+    """Its address."""
     name: str
     label: tuple[int, ...]
+    """`name` and `label`: its column, and the label of its row."""
     value: float
     u: float = math.nan
+    """`value` and `u`: in SI; `u` is the combined standard uncertainty, NaN where nothing is known of it."""
     contributions: tuple[Contribution, ...] = ()
+    """The largest first; what does nothing is left out."""
     correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """By (str, str); between these sources."""
     dof: float = math.nan
+    """Effective degrees of freedom by the formula of Welch and Satterthwaite, rounded to two decimals, then
+    truncated; NaN where correlated sources have a finite number."""
     level: float = math.nan
+    """Coverage probability."""
     factor: float = math.nan
+    """Coverage factor; NaN where there are no degrees of freedom."""
     because: str = ""
+    """What the coverage factor was taken from."""
     second: float = 0.0
+    """The part of the variance that is of second order, in the square of the cell's SI unit; 0 where first
+    order is enough."""
     unlooked: str = ""
+    """Why nothing is known of second order; empty if it was looked at."""
     shape: Shape = Shape.NORMAL
+    """The distribution that is assigned to it: normal, Student's t, that of the sum of its errors, or that of
+    a source which dominates."""
     law: Law | None = None
+    """As of :class:`~loopsheet.report.distribution.Error`: of what the quantity is more than the value."""
     summed: tuple[Together, ...] = ()
+    """Columns over pairs of rows that the cell sums: pairs share their rows."""
     draws: int = 0
+    """So many told its distribution and the coverage factor; 0 where the errors' own did."""
     least: float = -math.inf
+    """What the quantity cannot fall below, in SI."""
 
     @property
     def estimates(self) -> list[list[Contribution]]:
@@ -249,39 +203,29 @@ def draws_of(cell: str) -> str:
 
 @dataclass(frozen=True)
 class Distributed:
-    """The distribution of one cell by Monte Carlo (JCGM 101), and how the law of propagation fits it.
-
-    Parameters
-    ----------
-    number, lost : int
-        Draws, and those of them without a value, or with sums over other rows than those of the estimate: all
-        else is of the others.
-    median, mean, u : float
-        In SI; mean and standard uncertainty are NaN where the tails are too heavy.
-    symmetric, shortest : tuple of float
-        The ends of the intervals with equal tails and of least width, at the level of the budget; NaN where
-        too many draws have no value.
-    tail : float
-        The tail index; infinite where the tails end or fall faster than any power.
-    tolerance : float
-        To which the interval was asked for: half a unit of the second digit of the standard uncertainty.
-    stable : bool
-        Whether it is known to that.
-    differences : tuple of float
-        Of both ends of the interval with equal tails from those by the law of propagation.
-    """
+    """The distribution of one cell by Monte Carlo (JCGM 101), and how the law of propagation fits it."""
 
     number: int
     lost: int
+    """`number` and `lost`: draws, and those of them without a value, or with sums over other rows than those
+    of the estimate: all else is of the others."""
     median: float
     mean: float
     u: float
+    """`median`, `mean` and `u`: in SI; mean and standard uncertainty are NaN where the tails are too
+    heavy."""
     symmetric: tuple[float, float]
     shortest: tuple[float, float]
+    """`symmetric` and `shortest`: the ends of the intervals with equal tails and of least width, at the level
+    of the budget; NaN where too many draws have no value."""
     tail: float
+    """The tail index; infinite where the tails end or fall faster than any power."""
     tolerance: float
+    """To which the interval was asked for: half a unit of the second digit of the standard uncertainty."""
     stable: bool
+    """Whether it is known to that."""
     differences: tuple[float, float]
+    """Of both ends of the interval with equal tails from those by the law of propagation."""
 
     @property
     def validates(self) -> bool:
@@ -299,29 +243,19 @@ class Decision(StrEnum):
 
 @dataclass(frozen=True)
 class Conformity:
-    """A cell beside its limits.
-
-    Parameters
-    ----------
-    budget : Budget
-        Its uncertainty, with U at the level of the rule.
-    limits : Limits
-    guard : float
-        The width of the guard band in SI; NaN where it is a share of a U that is not known.
-    below, above : float
-        The probabilities that the quantity lies outside of its tolerance limits; NaN where the budget assigns
-        no distribution.
-    probability : float
-        That it lies within them: the conformance probability (JCGM 106, 3.3.7).
-    decision : Decision
-    """
+    """A cell beside its limits."""
 
     budget: Budget
+    """Its uncertainty, with U at the level of the rule."""
     limits: Limits
     guard: float
+    """The width of the guard band in SI; NaN where it is a share of a U that is not known."""
     below: float
     above: float
+    """`below` and `above`: the probabilities that the quantity lies outside of its tolerance limits; NaN
+    where the budget assigns no distribution."""
     probability: float
+    """That it lies within them: the conformance probability (JCGM 106, 3.3.7)."""
     decision: Decision
 
     @property
@@ -357,49 +291,32 @@ class Conformity:
 
 @dataclass(frozen=True)
 class Influence:
-    """What every source does to some cells, for reports that take their values.
-
-    Parameters
-    ----------
-    sources : tuple of ErrorSource
-    cells : mapping of str to sequence of float
-        By the address of a cell, what a standard uncertainty of each source moves it by, in SI.
-    rows : mapping of str to sequence of (int, float)
-        By the address of a cell of many: the places of the sources that move it, and by how much.
-    second : mapping of str to float
-        The standard uncertainty that terms of second order add, where they count.
-    correlations : tuple of (int, int, float)
-        Places of two sources, and their coefficient.
-    """
+    """What every source does to some cells, for reports that take their values."""
 
     sources: tuple[ErrorSource, ...]
     cells: Mapping[str, Sequence[float]]
+    """By the address of a cell, what a standard uncertainty of each source moves it by, in SI."""
     rows: Mapping[str, Sequence[tuple[int, float]]]
+    """By the address of a cell of many: the places of the sources that move it, and by how much."""
     second: Mapping[str, float]
+    """The standard uncertainty that terms of second order add, where they count."""
     correlations: tuple[tuple[int, int, float], ...]
+    """Places of two sources, and their coefficient."""
 
 
 @dataclass(frozen=True)
 class Misfit:
-    """What the residuals of a curve come to beside the standard uncertainties that were known before.
-
-    Parameters
-    ----------
-    chi2 : float
-        The least sum of squares of errors, each over its standard uncertainty, that make these residuals.
-    dof : int
-        Its degrees of freedom: the rows less what was fitted to them.
-    known_by : float
-        The degrees of freedom of the standard uncertainties themselves, the least of all rows; infinite where
-        they are known.
-    is_stated : bool
-        Whether any of them was stated; else they follow from printed digits alone.
-    """
+    """What the residuals of a curve come to beside the standard uncertainties that were known before."""
 
     chi2: float
+    """The least sum of squares of errors, each over its standard uncertainty, that make these residuals."""
     dof: int
+    """Its degrees of freedom: the rows less what was fitted to them."""
     known_by: float
+    """The degrees of freedom of the standard uncertainties themselves, the least of all rows; infinite where
+    they are known."""
     is_stated: bool
+    """Whether any of them was stated; else they follow from printed digits alone."""
 
     @property
     def birge(self) -> float:
@@ -409,30 +326,20 @@ class Misfit:
 
 @dataclass(frozen=True)
 class Uncertainties:
-    """The standard uncertainty of every cell, and the budgets of the result.
-
-    Parameters
-    ----------
-    u : mapping of column name to float array (rows,)
-        In SI; NaN where a cell has no value, and where nothing is known.
-    budgets : tuple of Budget
-        Of the cells of the headline.
-    conformities : tuple of Conformity
-        Of the cells that have limits.
-    influence : Influence or None
-        On those cells and all scalars.
-    bent : mapping of column name to bool array (rows,)
-        Whether terms of second order are a part of it.
-    misfits : mapping of str to Misfit
-        Of the workbook's curves, by the cells of their sums of squares; those that are known.
-    """
+    """The standard uncertainty of every cell, and the budgets of the result."""
 
     u: Mapping[str, NDArray[np.float64]]
+    """Of shape (rows,), by column name; in SI; NaN where a cell has no value, and where nothing is known."""
     budgets: tuple[Budget, ...] = ()
+    """Of the cells of the headline."""
     conformities: tuple[Conformity, ...] = ()
+    """Of the cells that have limits."""
     influence: Influence | None = None
+    """On those cells and all scalars."""
     bent: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    """Of shape (rows,), by column name; whether terms of second order are a part of it."""
     misfits: Mapping[str, Misfit] = field(default_factory=dict)
+    """Of the workbook's curves, by the cells of their sums of squares; those that are known."""
 
     @property
     def advice(self) -> dict[str, str]:

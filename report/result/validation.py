@@ -26,18 +26,12 @@ MISSING = "a program is not installed"
 
 @dataclass(frozen=True)
 class Example:
-    """One report folder, with all that is checked of it.
-
-    Parameters
-    ----------
-    name : str
-        What the record calls it.
-    report : Report
-        From :meth:`of`.
-    """
+    """One report folder, with all that is checked of it."""
 
     name: str
+    """What the record calls it."""
     report: Report
+    """From :meth:`of`."""
 
     @classmethod
     def of(cls, name: str, report: Report) -> Example:
@@ -78,17 +72,11 @@ class Example:
 
 @dataclass(frozen=True)
 class Validation:
-    """What was run on a machine, and what came of it.
-
-    Parameters
-    ----------
-    examples : tuple of Example
-    by : mapping of str to str
-        What computed it: versions, fingerprints of the sources, the machine.
-    """
+    """What was run on a machine, and what came of it."""
 
     examples: tuple[Example, ...]
     by: Mapping[str, str]
+    """What computed it: versions, fingerprints of the sources, the machine."""
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -75,92 +75,63 @@ INPUT = "input"
 
 @dataclass(frozen=True)
 class Witness:
-    """A given cell and a value of it.
-
-    Parameters
-    ----------
-    cell : str
-    index : tuple of int
-    value : float
-        In the unit that the cell was printed in; in SI if it was not printed.
-    printed : Printed or None
-        As it was printed; None for what the publication does not print.
-    """
+    """A given cell and a value of it."""
 
     cell: str
     index: tuple[int, ...]
     value: float
+    """In the unit that the cell was printed in; in SI if it was not printed."""
     printed: Printed | None
+    """As it was printed; None for what the publication does not print."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What can be said of one published value.
-
-    Parameters
-    ----------
-    verdict : str
-        One of the words above.
-    low, high : float or None
-        The values in SI that inputs which print as given were seen to yield; None where nothing is known.
-    bound_low, bound_high : float or None
-        What no such input can leave, in SI, by interval arithmetic; None where that is not known.
-    mismatch : float or None
-        The least that was found, in half units of the last printed digit.
-    witness : tuple of Witness
-        The input that prints as given and yields it, if one was found.
-    u : float or None
-        Combined standard uncertainty in SI, where the user gave uncertainties.
-    missing : str
-        For what is not checkable: what is missing.
-    """
+    """What can be said of one published value."""
 
     verdict: str
+    """One of the words above."""
     low: float | None = None
     high: float | None = None
+    """`low` and `high`: the values in SI that inputs which print as given were seen to yield; None where
+    nothing is known."""
     bound_low: float | None = None
     bound_high: float | None = None
+    """`bound_low` and `bound_high`: what no such input can leave, in SI, by interval arithmetic; None where
+    that is not known."""
     mismatch: float | None = None
+    """The least that was found, in half units of the last printed digit."""
     witness: tuple[Witness, ...] = ()
+    """The input that prints as given and yields it, if one was found."""
     u: float | None = None
+    """Combined standard uncertainty in SI, where the user gave uncertainties."""
     missing: str = ""
+    """For what is not checkable: what is missing."""
 
 
 @dataclass(frozen=True)
 class TableVerdict:
-    """Whether all values of a table, or of several, can come out of one and the same input.
-
-    Parameters
-    ----------
-    source : str
-        ``Table 2``; :data:`ALL` for all tables together.
-    values : int
-        How many were asked for together.
-    verdict : str
-        ``exact``, ``reachable``, ``within-uncertainty``, ``unreachable``, ``not found`` or ``not-checkable``.
-    mismatch : float or None
-        The worst of the values, for the best input that was found.
-    at_least : float or None
-        What the worst mismatch is at least, for whatever input; None without a certificate.
-    worst : PublishedValue or None
-        A value that is as far off as the worst.
-    witness : tuple of Witness
-        The best input that was found.
-    because : str
-        The table that makes it impossible, where a part of the tables already does.
-    out : int
-        How many of the values are out of reach by themselves.
-    """
+    """Whether all values of a table, or of several, can come out of one and the same input."""
 
     source: str
+    """``Table 2``; :data:`ALL` for all tables together."""
     values: int
+    """How many were asked for together."""
     verdict: str
+    """``exact``, ``reachable``, ``within-uncertainty``, ``unreachable``, ``not found`` or
+    ``not-checkable``."""
     mismatch: float | None = None
+    """The worst of the values, for the best input that was found."""
     at_least: float | None = None
+    """What the worst mismatch is at least, for whatever input; None without a certificate."""
     worst: PublishedValue | None = None
+    """A value that is as far off as the worst."""
     witness: tuple[Witness, ...] = ()
+    """The best input that was found."""
     because: str = ""
+    """The table that makes it impossible, where a part of the tables already does."""
     out: int = 0
+    """How many of the values are out of reach by themselves."""
 
     @property
     def possible(self) -> bool:
@@ -170,69 +141,46 @@ class TableVerdict:
 
 @dataclass(frozen=True)
 class Change:
-    """Something printed that may have been meant otherwise.
-
-    Parameters
-    ----------
-    kind : str
-        ``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
-        ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off
-        by a power of ten), ``rows`` (a mean over other rows), ``label`` (two numbers stand in each other's
-        place, or a row holds another column) or ``order`` (a list stands in another order).
-    cell : str
-        The column.
-    index : tuple of int
-        The row; empty for a scalar or a whole column.
-    source : str
-        The table, for what is published; :data:`INPUT` for what is given.
-    printed : str
-        As it stands.
-    would_print : str
-        As it would have to stand.
-    also : tuple of str
-        Other ways that it could stand.
-    other : tuple of int
-        The other row, of two that have changed places.
-    span : tuple of str
-        The first and the last way that it could stand, where not all of them are listed.
-    power : int
-        The power of ten that a unit is off by.
-    count : int
-        How many printed numbers change; a manner of printing that holds for a column counts as one.
-    """
+    """Something printed that may have been meant otherwise."""
 
     kind: str
+    """``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
+    ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off by
+    a power of ten), ``rows`` (a mean over other rows), ``label`` (two numbers stand in each other's place, or
+    a row holds another column) or ``order`` (a list stands in another order)."""
     cell: str
+    """The column."""
     index: tuple[int, ...]
+    """The row; empty for a scalar or a whole column."""
     source: str
+    """The table, for what is published; :data:`INPUT` for what is given."""
     printed: str
+    """As it stands."""
     would_print: str
+    """As it would have to stand."""
     also: tuple[str, ...] = ()
+    """Other ways that it could stand."""
     other: tuple[int, ...] = ()
+    """The other row, of two that have changed places."""
     span: tuple[str, ...] = ()
+    """The first and the last way that it could stand, where not all of them are listed."""
     power: int = 0
+    """The power of ten that a unit is off by."""
     count: int = 1
+    """How many printed numbers change; a manner of printing that holds for a column counts as one."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """A small change of what is printed with which everything published comes out.
-
-    Parameters
-    ----------
-    changes : tuple of Change
-    mismatch : float
-        The worst of all values then.
-    values : int
-        How many published values then come out of one input.
-    of : int
-        How many are published: those that are themselves misprinted do not come out.
-    """
+    """A small change of what is printed with which everything published comes out."""
 
     changes: tuple[Change, ...]
     mismatch: float
+    """The worst of all values then."""
     values: int
+    """How many published values then come out of one input."""
     of: int
+    """How many are published: those that are themselves misprinted do not come out."""
 
     @property
     def first(self) -> Change:
@@ -252,68 +200,45 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Tried:
-    """How many changes of the print were tried, and what became of them.
-
-    Parameters
-    ----------
-    explaining : int
-        With these everything published comes out.
-    excluded : int
-        It is certain that these explain nothing.
-    open : int
-        These were searched for in vain, and it is not certain that they explain nothing.
-    """
+    """How many changes of the print were tried, and what became of them."""
 
     explaining: int
+    """With these everything published comes out."""
     excluded: int
+    """It is certain that these explain nothing."""
     open: int
+    """These were searched for in vain, and it is not certain that they explain nothing."""
 
 
 @dataclass(frozen=True)
 class Relabelled:
-    """A row of a table that is named after an equation which it cannot come from.
-
-    Parameters
-    ----------
-    source : str
-        The table.
-    cell : str
-        The column that it comes out as.
-    printed, right : str
-        The number of the equation as printed, and that of the column's own.
-    gives : tuple of (str, str)
-        What the printed equation gives instead: columns with their units; empty if nothing of the kind.
-    wanted : (str, str)
-        What the row holds and in which unit.
-    mismatch : float
-        The worst of all values, the row being that column's.
-    rivals : mapping of str to float
-        The same for other columns that it might be.
-    """
+    """A row of a table that is named after an equation which it cannot come from."""
 
     source: str
+    """The table."""
     cell: str
+    """The column that it comes out as."""
     printed: str
     right: str
+    """`printed` and `right`: the number of the equation as printed, and that of the column's own."""
     gives: tuple[tuple[str, str], ...]
+    """What the printed equation gives instead: columns with their units; empty if nothing of the kind."""
     wanted: tuple[str, str]
+    """What the row holds and in which unit."""
     mismatch: float
+    """The worst of all values, the row being that column's."""
     rivals: Mapping[str, float]
+    """The same for other columns that it might be."""
 
 
 @dataclass(frozen=True)
 class Fit:
-    """How well a published average or fit goes with each that the workbook knows.
-
-    Parameters
-    ----------
-    published : PublishedValue
-    mismatch : mapping of column name to float
-        The worst mismatch of the tables it was made from and of itself, were it that column's; best first.
-    """
+    """How well a published average or fit goes with each that the workbook knows."""
 
     published: PublishedValue
     mismatch: Mapping[str, float]
+    """By column name; the worst mismatch of the tables it was made from and of itself, were it that column's;
+    best first."""
 
     @property
     def best(self) -> str:
@@ -323,47 +248,31 @@ class Fit:
 
 @dataclass(frozen=True)
 class Referee:
-    """All that the referee found.
-
-    Parameters
-    ----------
-    values : tuple of Verdict
-        In the order of the published values.
-    tables : tuple of TableVerdict
-        One a source, in the order they are first published.
-    joint : TableVerdict or None
-        All of them together; None where nothing is published.
-    explanations : tuple of Explanation
-        Those that change least come first; none where nothing needs one.
-    tried : Tried or None
-        Of what these were found; None where nothing needs one.
-    labels : tuple of Relabelled
-        Rows whose printed names cannot be right.
-    fits : tuple of Fit
-    free : tuple of str
-        The cells that the publication does not print.
-    errata : tuple of Change
-        The misprints of the input that are known.
-    amended : TableVerdict or None
-        All tables together if the known misprints of the input are put right; None if none are known.
-    misprints : tuple of Explanation
-        What else would have to change then, if they do not come out.
-    slips : tuple of Explanation
-        One slip each that would explain what the stated uncertainties explain as well.
-    """
+    """All that the referee found."""
 
     values: tuple[Verdict, ...] = ()
+    """In the order of the published values."""
     tables: tuple[TableVerdict, ...] = ()
+    """One a source, in the order they are first published."""
     joint: TableVerdict | None = None
+    """All of them together; None where nothing is published."""
     explanations: tuple[Explanation, ...] = ()
+    """Those that change least come first; none where nothing needs one."""
     tried: Tried | None = None
+    """Of what these were found; None where nothing needs one."""
     labels: tuple[Relabelled, ...] = ()
+    """Rows whose printed names cannot be right."""
     fits: tuple[Fit, ...] = ()
     free: tuple[str, ...] = ()
+    """The cells that the publication does not print."""
     errata: tuple[Change, ...] = ()
+    """The misprints of the input that are known."""
     amended: TableVerdict | None = None
+    """All tables together if the known misprints of the input are put right; None if none are known."""
     misprints: tuple[Explanation, ...] = ()
+    """What else would have to change then, if they do not come out."""
     slips: tuple[Explanation, ...] = ()
+    """One slip each that would explain what the stated uncertainties explain as well."""
 
     @property
     def as_printed(self) -> bool:

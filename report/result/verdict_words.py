@@ -419,11 +419,7 @@ def amended(found: Referee) -> str:
 def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
     """All of it for a terminal, a finding a line.
 
-    Parameters
-    ----------
-    found : Referee
-    meaning : callable
-        Takes a column's name; returns what it is.
+    `meaning`: takes a column's name; returns what it is.
     """
     if found.joint is None:
         return
@@ -449,11 +445,7 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
 def fit(found: Fit, meaning: Callable[[str], str]) -> str:
     """What a published average may be, in two sentences.
 
-    Parameters
-    ----------
-    found : Fit
-    meaning : callable
-        Takes a column's name; returns what it is.
+    `meaning`: takes a column's name; returns what it is.
     """
     printed = found.published.printed
     unit = behind(printed.unit)

@@ -19,7 +19,6 @@ def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
 
     Parameters
     ----------
-    z : float
     shape : Shape
         That the budget assigns; a width is such that the standard uncertainty is 1, of Student's t the scale.
     dof : float
@@ -54,11 +53,7 @@ def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None = None) -> A
 def conformity(budget: Budget, limits: Limits) -> Conformity:
     """A cell beside its limits.
 
-    Parameters
-    ----------
-    budget : Budget
-        Of the cell, with U at the level of the rule.
-    limits : Limits
+    `budget`: of the cell, with U at the level of the rule.
     """
     (low, high), value = limits.ends, budget.value
 

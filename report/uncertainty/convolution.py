@@ -87,15 +87,10 @@ class _Part:
 
 @dataclass(frozen=True)
 class Convolved(Law):
-    """A sum of independent errors, in standard uncertainties of the whole.
-
-    Parameters
-    ----------
-    parts : sequence of _Part
-        In those.
-    """
+    """A sum of independent errors, in standard uncertainties of the whole."""
 
     parts: Sequence[_Part] = field(repr=False)
+    """In those."""
 
     @cached_property
     def ends(self) -> tuple[float, float]:

@@ -29,7 +29,6 @@ def assigned(
 
     Parameters
     ----------
-    sources : sequence of ErrorSource
     contributions : float array (sources,)
         What each makes.
     u : float

@@ -52,29 +52,19 @@ class NotPlanned(ValueError):
 
 @dataclass(frozen=True)
 class Planner:
-    """Rows by what is chosen, and how sure a cell will be.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        Of what was measured.
-    values : Values
-        Computed from it.
-    design : Design
-    compute : callable
-        Takes inputs; returns the cell, all measured columns and what they rest on, with the marks of these.
-    cell : tuple of (str, tuple of int)
-        Its column, and the label of its row.
-    said : mapping of str to StatedErrors
-        What is stated of columns and parameters for the planned rows.
-    """
+    """Rows by what is chosen, and how sure a cell will be."""
 
     inputs: Inputs
+    """Of what was measured."""
     values: Values
+    """Computed from it."""
     design: Design
     compute: Callable[[Inputs], Marks]
+    """Takes inputs; returns the cell, all measured columns and what they rest on, with the marks of these."""
     cell: tuple[str, tuple[int, ...]]
+    """Its column, and the label of its row."""
     said: Said
+    """What is stated of columns and parameters for the planned rows."""
     _asked: list[Spread] = field(default_factory=list, init=False, repr=False)
     """The last one: all are of one sheet, of which not everything is made again."""
 

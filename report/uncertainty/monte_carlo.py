@@ -73,7 +73,6 @@ def draw(
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         All columns, without a batch.
     budget : Budget
@@ -118,7 +117,6 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         All columns, without a batch.
     budget : Budget

@@ -61,7 +61,6 @@ class Spread:
 
     Parameters
     ----------
-    inputs : Inputs
     values : Values
         All columns, without a batch.
     like : Spread, optional
@@ -220,13 +219,7 @@ class Spread:
     def budget(self, name: str, row: int, level: float = LEVEL) -> Budget:
         """Where the uncertainty of a cell comes from.
 
-        Parameters
-        ----------
-        name : str
-            Its column.
-        row : int
-        level : float
-            The coverage probability of its expanded uncertainty.
+        `name`: its column. `level`: the coverage probability of its expanded uncertainty.
         """
         column = self.values.sheet[name]
         label = self.values.labels(column)[row]
@@ -297,13 +290,8 @@ class Spread:
     def influence(self, cells: Sequence[tuple[str, int]], columns: Sequence[str] = ()) -> Influence:
         """What every source does to some cells; those without a value are left out.
 
-        Parameters
-        ----------
-        cells : sequence of (str, int)
-            Columns and rows.
-        columns : sequence of str
-            Others, of all their rows: most sources move one of these. One that would make more than
-            :data:`MOST_PASSED` numbers of all of them is left out.
+        `cells`: columns and rows. `columns`: others, of all their rows: most sources move one of these. One
+        that would make more than :data:`MOST_PASSED` numbers of all of them is left out.
         """
         own = self.contributions(cells)
         at, second = self._addressed(cells, own)

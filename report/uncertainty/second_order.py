@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 STEP = 1 / 16
 """In standard uncertainties. For cells that are of third order in their inputs any step would do."""
+FAR = 2.0
+"""In standard uncertainties: about as far as a coverage interval reaches."""
 COUNTS = 0.05
 """The terms count from this share of the variance of first order on."""
 LARGEST = 1 << 23
@@ -42,12 +44,7 @@ _FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 
 def root_of(number: int, pairs: Sequence[tuple[int, int, float]]) -> Array:
     """What makes correlated errors of independent ones (number, number): a root of their correlation matrix.
 
-    Parameters
-    ----------
-    number : int
-        Of sources.
-    pairs : sequence of (int, int, float)
-        The correlation coefficients of some; an error that is in none is itself.
+    `number`: of sources. `pairs`: the correlation coefficients of some; an error that is in none is itself.
     """
     matrix = np.eye(number)
     for a, b, r in pairs:
@@ -66,10 +63,8 @@ class SecondOrder:
     ----------
     chain : Chain
         From the given numbers to all cells.
-    values : Values
     program : Program
         Of their sheet.
-    sources : sequence of ErrorSource
     root : float array (sources, sources)
         What makes the errors of independent ones: its product with its transpose is their correlation matrix.
     weights : float array (numbers, sources)
@@ -122,6 +117,10 @@ class SecondOrder:
         """What rests on sums that run over other rows a step away: slopes of other estimators."""
         self.overdone = set[str]()
         """What has cells of which the terms of second order take away more than half of the first."""
+        self.bending = set[str]()
+        """What has cells that first order tells near their values, and not as far away as U reaches."""
+        self._value = values.value
+        self._far = _beside(values, program, sources, root @ np.hstack([own, -own]) * (FAR / STEP)).value
         some = np.random.default_rng(1).standard_normal((len(sources), 1))
         together = _beside(values, program, sources, root @ some @ np.array([[1.0, 2.0, 4.0]]))
         self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
@@ -145,6 +144,10 @@ class SecondOrder:
             return "it has a corner here (Abs, Max, Min or cases), where derivatives jump"
         if name in self.torn:
             return f"{STEP:.2g} u from what was given its sums run over other rows"
+        if name in self.bending:
+            return (
+                f"it is no straight line as far as {FAR:g} u from what was given, though near its value it is"
+            )
         if name in self.overdone:
             return "its terms take away most of those of first order, so that others count, too"
         return "the sheet has no values so far from what was given"
@@ -154,7 +157,6 @@ class SecondOrder:
 
         Parameters
         ----------
-        cells : sequence of (str, int)
         first : float array (cells, sources)
             What each source contributes to first order.
 
@@ -183,9 +185,24 @@ class SecondOrder:
             overdone = more < -own / 2
             self.overdone |= {name for (name, _), is_over in zip(cells, overdone, strict=True) if is_over}
             little = np.maximum(bent, np.abs(more)) <= COUNTS * own
+            bending = little & (self._bent_far(cells, used, first) > COUNTS * own)
+            self.bending |= {name for (name, _), is_bent in zip(cells, bending, strict=True) if is_bent}
             unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
             sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
-            found: Array = np.where(unknown | sharp | overdone, np.nan, np.where(little, 0.0, more))
+            found: Array = np.where(unknown | sharp | overdone | bending, np.nan, np.where(little, 0.0, more))
+        return found
+
+    def _bent_far(self, cells: Sequence[tuple[str, int]], used: NDArray[np.intp], first: Array) -> Array:
+        """The variance that bends would make which make what is off as far away as U reaches (cells,)."""
+        half = len(self.sources)
+        off = np.zeros((2, *used.shape))
+        for n, (name, row) in enumerate(cells):
+            far = np.broadcast_to(self._far[name], (2 * half, len(self._value[name])))[:, row]
+            change = FAR * first[n]
+            off[:, n] = far[used[n]] - change, far[half + used[n]] + change
+            off[:, n] -= self._value[name][row]
+        # By a second derivative f'' it is FAR^2 f'' / 2, and the variance is f''^2 / 2.
+        found: Array = np.sum(np.nan_to_num(off) ** 2, axis=(0, 2)) / FAR**4
         return found
 
     def _nearby(self, cells: Sequence[tuple[str, int]]) -> tuple[NDArray[np.intp], Array, Array]:

@@ -22,11 +22,7 @@ def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
 
     A number that the workbook declares exact has none unless one was stated.
 
-    Parameters
-    ----------
-    inputs : Inputs
-    values : Values
-        Of the sheet; they tell what rows are called.
+    `values`: of the sheet; they tell what rows are called.
     """
     return (*_own(inputs, values), *_shared(inputs, values), *_taken(inputs, values))
 

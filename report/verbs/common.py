@@ -123,14 +123,7 @@ def answer(told: str, known: bool) -> int:
 def print_checks(checks: tuple[Check, ...], form: str, title: str, more: Mapping[str, Any]) -> None:
     """Print checks for a machine, in one of :data:`~loopsheet.report.views.checks.FORMATS`.
 
-    Parameters
-    ----------
-    checks : tuple of Check
-    form : str
-    title : str
-        What was checked, for formats with a heading.
-    more : mapping of str to anything JSON can hold
-        What JSON tells besides.
+    `title`: what was checked, for formats with a heading. `more`: what JSON tells besides.
     """
     from ..views.checks import FORMATS
 
@@ -153,12 +146,7 @@ def tell(checks: Iterable[Check]) -> None:
 
 
 class Progress:
-    """Says what is being done once it has taken longer than a second; on a terminal in one moving line.
-
-    Parameters
-    ----------
-    stream : TextIO
-    """
+    """Says what is being done once it has taken longer than a second; on a terminal in one moving line."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream, self.begun, self.shown = stream, time.monotonic(), ""

@@ -17,11 +17,7 @@ __all__ = ["FORMATS", "as_markdown", "as_text", "moved"]
 def as_text(found: Differences, most: int) -> str:
     """Lines for a terminal.
 
-    Parameters
-    ----------
-    found : Differences
-    most : int
-        How many numbers, and how many of each other kind, are named; the rest are counted.
+    `most`: how many numbers, and how many of each other kind, are named; the rest are counted.
     """
     lines = [f"numbers    {_count(found)}"]
     for move in found.moved[:most]:

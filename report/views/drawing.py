@@ -142,10 +142,8 @@ def arrowhead(axes: Axes, x: Array, y: Array, part: float, colour: str, *, back:
 class Labels:
     """Texts put where nothing else is: the first place that is free, or none.
 
-    Parameters
-    ----------
-    figure, axes
-        The picture with its limits set; its layout is fixed here, because only then are places known.
+    `figure` and `axes`: the picture with its limits set; its layout is fixed here, because only then are
+    places known.
     """
 
     def __init__(self, figure: Figure, axes: Axes) -> None:

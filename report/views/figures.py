@@ -43,7 +43,6 @@ def draw(report: Report, name: str) -> Figure:
 
     Parameters
     ----------
-    report : Report
     name : str
         One of :func:`drawings`.
 
@@ -66,10 +65,7 @@ def draw(report: Report, name: str) -> Figure:
 def svg(report: Report, name: str) -> str:
     """A drawing as SVG text, without a date and without anything to load.
 
-    Parameters
-    ----------
-    report, name
-        As for :func:`draw`.
+    `report` and `name`: as for :func:`draw`.
     """
     return files(report, name, ["svg"])["svg"].decode()
 
@@ -77,10 +73,7 @@ def svg(report: Report, name: str) -> str:
 def pdf(report: Report, name: str) -> bytes:
     """A drawing as a PDF page of its own size, without a date.
 
-    Parameters
-    ----------
-    report, name
-        As for :func:`draw`.
+    `report` and `name`: as for :func:`draw`.
     """
     return files(report, name, ["pdf"])["pdf"]
 
@@ -88,12 +81,7 @@ def pdf(report: Report, name: str) -> bytes:
 def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]:
     """A drawing that is made once, as a file of each form.
 
-    Parameters
-    ----------
-    report, name
-        As for :func:`draw`.
-    forms : collection of str
-        ``svg``, ``pdf``.
+    `report` and `name`: as for :func:`draw`. `forms`: ``svg``, ``pdf``.
     """
     from .svg import written
 

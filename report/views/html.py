@@ -154,13 +154,8 @@ def csp(style: str, script: str = "") -> str:
 def render(report: Report, figures: Mapping[str, str], program: str | None = None) -> str:
     """Print a report as HTML.
 
-    Parameters
-    ----------
-    report : Report
-    figures : mapping of str to str
-        SVG text of each figure, by its name.
-    program : str or None
-        The sheet as JavaScript, for a page that recalculates itself; None makes a page without a script.
+    `figures`: SVG text of each figure, by its name. `program`: the sheet as JavaScript, for a page that
+    recalculates itself; None makes a page without a script.
     """
     material = Material(report)
     shown = [figure for figure in material.figures if figure.name in figures]

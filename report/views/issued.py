@@ -12,23 +12,15 @@ __all__ = ["Issued"]
 
 @dataclass(frozen=True)
 class Issued:
-    """A finished report, and what is made of it for several views at once.
-
-    Parameters
-    ----------
-    report : Report
-    pictures : mapping of str to bytes
-        The files of its figures, in the forms that the formats show.
-    program : str
-        The sheet for a page that recalculates itself.
-    workbook : bytes
-        The sheet as an xlsx file.
-    """
+    """A finished report, and what is made of it for several views at once."""
 
     report: Report
     pictures: Mapping[str, bytes]
+    """The files of its figures, in the forms that the formats show."""
     program: str = ""
+    """The sheet for a page that recalculates itself."""
     workbook: bytes = b""
+    """The sheet as an xlsx file."""
 
     def figures(self, form: str) -> dict[str, bytes]:
         """The figures of a form by their names."""

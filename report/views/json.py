@@ -246,7 +246,6 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
 
     Parameters
     ----------
-    report : Report
     outputs : mapping of str to bytes
         Every file that was written, by its name in the output folder.
     sources : mapping of str to str

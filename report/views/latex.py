@@ -150,11 +150,7 @@ def _column(column: TableColumn) -> str:
 def render(report: Report, figures: Collection[str]) -> str:
     """Print a report as LaTeX.
 
-    Parameters
-    ----------
-    report : Report
-    figures : collection of str
-        Names of the figures that are there as ``figures/NAME.pdf``.
+    `figures`: names of the figures that are there as ``figures/NAME.pdf``.
     """
     material = Material(report)
     pictures = {figure.name: figure for figure in material.figures if figure.name in figures}

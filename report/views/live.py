@@ -107,11 +107,7 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
 def data(report: Report, document: Material) -> str:
     """What the script must know of the report, as JSON that cannot end the element it stands in.
 
-    Parameters
-    ----------
-    report : Report
-    document : Material
-        The same report, as its document sees it.
+    `document`: the same report, as its document sees it.
     """
     sheet = report.sheet
     known = {
@@ -300,24 +296,15 @@ def _printed(report: Report, name: str) -> Printed | None:
 
 @dataclass(frozen=True)
 class BarPart:
-    """What the formula bar shows of a column.
-
-    Parameters
-    ----------
-    column : Column
-    symbol : Math
-    meaning : tuple of inlines
-    unit : Unit
-        It is shown in.
-    equation : Math or None
-        Its equation with ``@n@`` for the n-th cell in it; None if it is given or sums over rows.
-    """
+    """What the formula bar shows of a column."""
 
     column: Column
     symbol: Math
     meaning: Inlines
     unit: Unit
+    """It is shown in."""
     equation: Math | None
+    """Its equation with ``@n@`` for the n-th cell in it; None if it is given or sums over rows."""
 
 
 def parts(report: Report, document: Material) -> Iterator[BarPart]:

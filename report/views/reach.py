@@ -42,29 +42,19 @@ GRID = "#e6e6e6"
 
 @dataclass(frozen=True)
 class ReachRow:
-    """A published value in the picture; lengths are in units of its last digit, from its own value.
-
-    Parameters
-    ----------
-    place : str
-        Where it is published and, in a list of one cell's values, which cell it is: the heading above it.
-    name : str
-        What tells it from others under that heading, and the published digits.
-    low, high : float
-        What is reachable.
-    here : float or None
-        The recomputed value.
-    band : tuple of float
-        What prints as published.
-    verdict : str
-    """
+    """A published value in the picture; lengths are in units of its last digit, from its own value."""
 
     place: str
+    """Where it is published and, in a list of one cell's values, which cell it is: the heading above it."""
     name: str
+    """What tells it from others under that heading, and the published digits."""
     low: float
     high: float
+    """`low` and `high`: what is reachable."""
     here: float | None
+    """The recomputed value."""
     band: tuple[float, float]
+    """What prints as published."""
     verdict: str
 
     @property

@@ -19,18 +19,12 @@ _SHORT = 14.0
 
 @dataclass(frozen=True)
 class Typeset:
-    """A displayed equation, broken into lines.
-
-    Parameters
-    ----------
-    left : str
-        LaTeX in front of the first relation, if the relations are aligned; else empty.
-    rows : tuple of str
-        LaTeX of the lines; all but the first continue it.
-    """
+    """A displayed equation, broken into lines."""
 
     left: str
+    """LaTeX in front of the first relation, if the relations are aligned; else empty."""
     rows: tuple[str, ...]
+    """LaTeX of the lines; all but the first continue it."""
 
     @property
     def latex(self) -> str:
@@ -63,10 +57,7 @@ def relates(row: str) -> bool:
 def block(sides: Sequence[Terms]) -> Typeset:
     """Break an equation into lines, before a relation or between the terms of a sum.
 
-    Parameters
-    ----------
-    sides : sequence of terms
-        Of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
+    `sides`: of the equation, or one relation: from :meth:`~loopsheet.report.document.math.MathPrinter.sides`.
     """
     whole = " = ".join(join(side) for side in sides)
     if width(whole) <= TEXT_WIDTH or (len(sides) == 1 and len(sides[0]) == 1):

@@ -29,11 +29,7 @@ TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 class Writer(ABC):
     """Prints the nodes of a document in one format.
 
-    Parameters
-    ----------
-    material : Material
-    pictures : mapping of str to anything
-        What the format needs of each figure that was drawn.
+    `pictures`: what the format needs of each figure that was drawn.
     """
 
     macros: ClassVar[str]

@@ -44,11 +44,7 @@ def write(made: Issued, stage: Path) -> None:
 def render(report: Report, grid: Grid) -> bytes:
     """The workbook as a file.
 
-    Parameters
-    ----------
-    report : Report
-    grid : Grid
-        The report's sheet as cells, from the Excel engine.
+    `grid`: the report's sheet as cells, from the Excel engine.
     """
     buffer = io.BytesIO()
     options = {

@@ -34,13 +34,7 @@ _ORDER = f"{_CODE} rows that are not those as issued, by which groups, limits an
 
 
 class GivenCells:
-    """The given cells: each column's printed numbers, what is allowed, and what is refused.
-
-    Parameters
-    ----------
-    report : Report
-    grid : Grid
-    """
+    """The given cells: each column's printed numbers, what is allowed, and what is refused."""
 
     def __init__(self, report: Report, grid: Grid) -> None:
         self.report, self.grid = report, grid

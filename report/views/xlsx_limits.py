@@ -81,9 +81,6 @@ def write_limits(
 
     Parameters
     ----------
-    sheet : xlsxwriter worksheet
-    style : Style
-    found : Conformity
     place : Place
         Of the budget's value, in whose unit all of it is.
     form : str

@@ -18,13 +18,7 @@ TITLE = "Inside what is expected (negative: outside)"
 def mark_outside(sheets: Mapping[str, Any], style: Style, report: Report, grid: Grid) -> None:
     """Colour the cells that lie outside, and their margins.
 
-    Parameters
-    ----------
-    sheets : mapping of str to worksheet
-    style : Style
-    report : Report
-    grid : Grid
-        One that holds no margins has no marks.
+    `grid`: one that holds no margins has no marks.
     """
     for margin in report.marks.margins:
         if margin.column.name not in grid.by_name:

@@ -70,12 +70,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
 
 
 class Style:
-    """Formats of a workbook by name, each made once, in the order in which they are first used.
-
-    Parameters
-    ----------
-    book : xlsxwriter.Workbook
-    """
+    """Formats of a workbook by name, each made once, in the order in which they are first used."""
 
     def __init__(self, book: Any) -> None:
         self._book = book

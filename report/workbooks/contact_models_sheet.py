@@ -41,11 +41,8 @@ _CALLED = {
 def sheet(given: frozenset[str]) -> Sheet:
     """The sheet for the parameters that were given.
 
-    Parameters
-    ----------
-    given : frozenset of str
-        Names of parameters: they decide between the mass and the density, a free and a fixed target, and
-        whether first yield is told.
+    `given`: names of parameters: they decide between the mass and the density, a free and a fixed target, and
+    whether first yield is told.
     """
     laid = _Laid()
     fitted = soft_impact_fit.columns(TESTS, (v, e, x_p))
@@ -202,11 +199,7 @@ def constants(sheet: Sheet) -> dict[Symbol, str]:
 def branches(sheet: Sheet, points: int) -> Drawn:
     """The columns of charts: approach and force of both branches of each test, by every model.
 
-    Parameters
-    ----------
-    sheet : Sheet
-    points : int
-        Of each branch.
+    `points`: of each branch.
     """
     row, step, size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
     axis = RepeatAxis("loops", row, size, of=TESTS, step=step, count="loop_points")

@@ -23,12 +23,7 @@ _MADE = Axis("tests", q, fit.size)
 def design(sheet: Sheet, alpha: str = "alpha_log", C: str = "C_log") -> Design:
     """How planned speeds become tests: by a curve of the sheet, and by how restitution falls with speed.
 
-    Parameters
-    ----------
-    sheet : Sheet
-        Of the workbook; it has the cells `alpha` and `C`.
-    alpha, C : str
-        The curve, in N and m.
+    `sheet`: of the workbook; it has the cells `alpha` and `C`. `alpha` and `C`: the curve, in N and m.
     """
     given = {name: Column(name, None, Given(), sheet[name].unit) for name in (alpha, C, "m_red", "beta")}
     v, e, x_m = (Column(name, TESTS, Given(), sheet[name].unit) for name in ("v", "e", "x_m"))

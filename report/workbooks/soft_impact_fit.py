@@ -46,11 +46,7 @@ _LATEX = {
 def columns(tests: Axis, measured: tuple[Column, Column, Column]) -> tuple[Column, ...]:
     """The columns of the fit.
 
-    Parameters
-    ----------
-    tests : Axis
-    measured : tuple of Column
-        Speed, restitution and imprint depth of a test.
+    `measured`: speed, restitution and imprint depth of a test.
     """
     made = _making(tests, measured)
     uncertain = zip(("u_v", "u_e", "u_x"), measured, strict=True)

@@ -30,10 +30,7 @@ NEAR = f"speeds within {100 * (APART - 1)} %: too near for averages and fits"
 def apart(where: Cells) -> tuple[Rel, str]:
     """That the speeds of two tests tell an exponent, and what is said where they do not.
 
-    Parameters
-    ----------
-    where : mapping of Expr to Expr
-        The cells that the symbols of the two tests stand for.
+    `where`: the cells that the symbols of the two tests stand for.
     """
     return (Max(V[1], V[2]) >= APART * Min(V[1], V[2])).xreplace(dict(where)), NEAR
 
@@ -41,11 +38,7 @@ def apart(where: Cells) -> tuple[Rel, str]:
 def limits(columns: tuple[Column, ...], where: Cells) -> dict[str, tuple[Limit, ...]]:
     """The limits of the columns of a sheet, by name.
 
-    Parameters
-    ----------
-    columns : tuple of Column
-    where : mapping of Expr to Expr
-        The cells that the symbols of the two tests stand for.
+    `where`: the cells that the symbols of the two tests stand for.
     """
     by_name = {column.name: column for column in columns}
     exponents = ("alpha", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin", "alpha_eiv")

@@ -21,10 +21,7 @@ Cells = Mapping[Expr, Expr]
 def alpha_rule(where: Cells) -> Root:
     """The root of (11): in u = 1/(alpha + 1) it is smooth, its domain and its turning point closed form.
 
-    Parameters
-    ----------
-    where : mapping of Expr to Expr
-        The cells that the symbols of the two tests stand for.
+    `where`: the cells that the symbols of the two tests stand for.
     """
     u = alpha_root.u
     form = alpha_root.root_form

@@ -64,10 +64,7 @@ def _pair_symbols() -> dict[Expr, Expr]:
 def sheet(given: frozenset[str]) -> Sheet:
     """The sheet for the parameters that were given.
 
-    Parameters
-    ----------
-    given : frozenset of str
-        Names of parameters: they decide between the mass and the diameter, a free and a fixed target.
+    `given`: names of parameters: they decide between the mass and the diameter, a free and a fixed target.
     """
     where = _pair_symbols()
     alpha = _column("alpha", PAIRS, alpha_rule(where), "alpha", requires=two_tests(where))

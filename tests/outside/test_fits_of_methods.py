@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import spreadsheets
+from test_fit_of_both import pearson
 
 from loopsheet.report.cells.values import CODES
 from loopsheet.report.inputs.folders import PAPER
@@ -108,3 +109,24 @@ def test_a_fit_to_many_rows_has_a_value_in_every_cell(tmp_path: Path, require: C
     found = spreadsheets.compare(book, book.values({}), read["many"])
     assert found.cells > 10 * MANY
     assert [line for line in found.wrong if "'#" in line] == []  # what is left of 290 K has lost some digits
+
+
+def test_a_line_with_errors_in_both_variables(tmp_path: Path, require: Callable[..., str]) -> None:
+    """The points that rows belong to are passes of the loop, too."""
+    book = spreadsheets.deliver(pearson(tmp_path), drawn=False)
+    every: dict[str, spreadsheets.Edits] = {
+        "as it is": {}, "another ordinate": {("y", 3): 4.9}, "one that is missing": {("y", 3): None}
+    }  # fmt: skip
+    read = spreadsheets.recalculate(
+        require("soffice", "libreoffice"),
+        tmp_path / "office",
+        {name: book.edited(edits) for name, edits in every.items()},
+    )
+    slopes = set()
+    for name, edits in every.items():
+        values = book.values(edits)
+        found = spreadsheets.compare(book, values, read[name])
+        assert found.wrong == [], name
+        assert found.cells > 1000
+        slopes.add(values.scalar("b"))
+    assert len(slopes) == 3

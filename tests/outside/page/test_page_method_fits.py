@@ -9,6 +9,7 @@ from shutil import copytree
 import driving
 import pytest
 from driving import Live
+from test_fit_of_both import pearson
 
 from loopsheet.report.build import build
 from loopsheet.report.inputs.folders import PAPER
@@ -55,3 +56,22 @@ def test_the_edited_page_is_what_a_rebuild_gives(
         assert live.page.locator("#formula-bar").get_attribute("data-cell") == "b_1"
         beside = live.page.locator("#bar-precedents button, #bar-dependents button")
         assert "b_1" not in beside.evaluate_all("all => all.map((one) => one.dataset.goto)")
+
+
+def test_a_line_with_errors_in_both_variables_is_fitted_anew(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    folder = pearson(tmp_path)
+    build(Study(folder), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    issued = Study(folder).computed.values
+    live.type("y", 4, "4.9")
+    table = folder / "m.csv"
+    rows = table.read_text(encoding="utf-8")
+    assert rows.count(",4.6,") == 1
+    table.write_text(rows.replace(",4.6,", ",4.9,"), encoding="utf-8")
+    again = Study(folder).computed.values
+    cells = [cell for cell in live.cells() if cell.name in ("a", "b", "u_a", "u_b", "line_at_x", "line_S")]
+    assert {cell.name for cell in cells} >= {"a", "b", "u_b", "line_at_x"}
+    assert driving.differences(cells, again) == []
+    assert driving.differences(cells, issued) != []

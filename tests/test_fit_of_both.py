@@ -1,0 +1,239 @@
+"""Fits of methods with errors in several variables: what is published, another way, proofs."""
+
+from __future__ import annotations
+
+import types
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sympy import Expr, IndexedBase, Symbol, exp, symbols
+from test_fit import cells, k, n, write
+from test_fitting_model import PEARSON, YORK, same
+from test_fitting_model import x as abscissa
+from test_fitting_model import y as ordinate
+
+import loopsheet
+from loopsheet import Method, fit, measured, unknown
+from loopsheet.derivations.equation import Derivation, Ledger
+from loopsheet.derivations.least_squares import LeastSquares
+from loopsheet.derivations.proof import check_step, prove
+from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report.cells.values import Values
+from loopsheet.report.cli import main
+from loopsheet.report.engines import exact
+from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.fitting.model import Model
+from loopsheet.report.study import Study
+
+LINE = """from loopsheet import Method, fit, let, measured, unknown
+
+
+class Pearson(Method):
+    "K. Pearson, On lines and planes of closest fit to systems of points in space, 1901."
+    x = measured("1", "abscissa")
+    y = measured("1", "ordinate")
+    a, b = unknown("intercept"), unknown("slope")
+    line = fit(y, a + b * x, u={x: "stated", y: "stated"})
+    u_a = let(line.s_a / line.s, "u of the intercept by the adjusted points")
+    u_b = let(line.s_b / line.s, "u of the slope by the adjusted points")
+    birge = let(line.s**2, "square of Birge's ratio")
+"""
+
+
+def pearson(folder: Path) -> Path:
+    """A report folder of Pearson's data with York's weights."""
+    columns = (PEARSON[abscissa], YORK[abscissa], PEARSON[ordinate], YORK[ordinate])
+    rows = "".join(",".join(map(repr, map(float, each))) + "\n" for each in zip(*columns, strict=True))
+    write(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
+    return folder
+
+
+def test_all_that_is_published_of_pearsons_data_with_yorks_weights(tmp_path: Path) -> None:
+    """Slope and intercept: Neri, Saitta, Chiofalo (1989). By the adjusted points: York, Evensen, Martinez,
+    De Basabe Delgado (2004). Propagated: Kalantar (1992)."""
+    report = loopsheet.load(pearson(tmp_path))
+    found = {
+        "a": "5.479910224", "b": "-0.480533407", "u_a": "0.294970735", "u_b": "0.057985009",
+        "birge": "1.483294149",
+    }  # fmt: skip
+    for name, printed in found.items():
+        assert same(float(report[name]), printed), name
+    assert same(float(report["a"].u), "0.29193")
+    assert same(float(report["b"].u), "0.057617")
+    assert not report.findings
+
+
+def test_what_misfits_is_told_by_the_errors_of_both(tmp_path: Path) -> None:
+    """To first order, what the fit itself makes of the distances."""
+    report = Study(pearson(tmp_path)).computed
+    misfit = report.uncertain().misfits["line_S"]
+    assert (misfit.dof, misfit.is_stated) == (8, True)
+    assert misfit.chi2 == pytest.approx(report.values.scalar("line_S"), rel=0.01)
+
+
+# ------------------------------------------------------------------------------ by another way
+
+a, b, x, y, z = symbols("a b x y z")
+MODELS: dict[str, tuple[Expr, tuple[float, float], Any]] = {
+    "a power": (a * x**b, (2, 1.3), lambda x, z: 2 * x**1.3),
+    "a growth": (a * (1 - exp(-b * x)), (3, 0.4), lambda x, z: 3 * (1 - np.exp(-0.4 * x))),
+    "of two": (a * x + b * z**2, (1, 0.5), lambda x, z: x + z**2 / 2),
+    "a product": (a * x * exp(-b * z), (2, 0.2), lambda x, z: 2 * x * np.exp(-0.2 * z)),
+}
+
+
+def method_of(model: Expr, start: tuple[float, float]) -> Any:
+    """A method whose variables have their stated errors."""
+
+    def fill(body: dict[str, Any]) -> None:
+        names = sorted(map(str, model.free_symbols - {a, b}))
+        where: dict[Expr, Any] = {}
+        for name in (*names, "y"):
+            body[name] = measured("1", name)
+            where[Symbol(name)] = body[name]
+        for parameter, first in zip((a, b), start, strict=True):
+            body[str(parameter)] = unknown(str(parameter), start=first)
+            where[parameter] = body[str(parameter)]
+        sizes = {where[Symbol(name)]: "stated" for name in (*names, "y")}
+        body["f"] = fit(where[y], model.xreplace(where), u=sizes)
+
+    return types.new_class("Both", (Method,), {}, fill)
+
+
+@pytest.mark.parametrize(
+    ("name", "engine"), [*((name, evaluate) for name in MODELS), ("a power", exact.evaluate)]
+)
+def test_a_curve_is_where_the_adjusted_points_have_it(name: str, engine: Any) -> None:
+    model, start, true = MODELS[name]
+    rng, count = np.random.default_rng(5), 12
+    at = {x: np.linspace(0.5, 6, count), z: rng.uniform(1, 3, count)}
+    sizes = {x: rng.uniform(0.02, 0.1, count), z: rng.uniform(0.02, 0.06, count)}
+    at, sizes = ({each: of[each] for each in at if model.has(each)} for of in (at, sizes))
+    sizes[y] = rng.uniform(0.02, 0.1, count)
+    at[y] = true(*(at.get(each, np.nan) for each in (x, z)))
+    data = {each: at[each] + rng.normal(0, sizes[each]) for each in at}
+    found = Model(y - model, (a, b), (*at,)).fit(data, sizes, [*start])
+    sheet = method_of(model, start).workbook.sheet(frozenset())
+    given = {**{str(s): d for s, d in data.items()}, **{f"u_{s}": u for s, u in sizes.items()}}
+    values: Any = engine(sheet, {"readings": range(1, count + 1)}, given)
+    values = values if engine is evaluate else values.rounded(sheet)
+    assert isinstance(values, Values)
+    assert cells(values, "a", "b") == pytest.approx(found.parameters, rel=1e-9)
+    adjusted = cells(values, "s_a", "s_b") / values.scalar("f_s")
+    assert adjusted == pytest.approx(found.u, rel=1e-8)
+    assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-9)
+    for column, symbol in enumerate(at):
+        if symbol != y:
+            assert values.value[f"f_at_{symbol}"] == pytest.approx(found.feet.points[:, column], rel=1e-8)
+
+
+def test_errors_of_one_variable_are_what_is_left_of_two() -> None:
+    """No error in x: the line of the ordinary fit, and rows stay where they are."""
+    sheet = method_of(a + b * x, (0, 0)).workbook.sheet(frozenset())
+    at, size = np.linspace(1, 5, 7), np.array([1, 2, 1, 3, 2, 1, 1]) * 0.1
+    rows = np.array([1.1, 2.3, 2.8, 4.4, 4.6, 5.9, 7.2])
+    given = {"x": at, "y": rows, "u_x": np.zeros(7), "u_y": size}
+    values = evaluate(sheet, {"readings": range(1, 8)}, given)
+    slope, offset = np.polyfit(at, rows, 1, w=1 / size)
+    assert cells(values, "a", "b") == pytest.approx([offset, slope], rel=1e-12)
+    assert values.value["f_at_x"].tolist() == at.tolist()
+
+
+# ------------------------------------------------------------------------------ why it holds
+
+
+def row(symbol: Symbol) -> Any:
+    """A cell of a column of positive numbers."""
+    return IndexedBase(Symbol(symbol.name, positive=True))[k]
+
+
+def squares(name: str) -> LeastSquares:
+    model, _, _ = MODELS[name]
+    rows: dict[Expr, Any] = {each: row(each) for each in (x, y, z)}
+    own = (f"(L{number})" for number in range(1, 99))
+    others = {rows[each]: row(Symbol(f"u_{each}")) for each in (x, z) if model.has(each)}
+    real = {each: Symbol(each.name, real=True) for each in (a, b)}
+    words = {each: str(each) for each in real.values()}
+    u = row(Symbol("u_y"))
+    return LeastSquares(
+        "f", rows[y], model.xreplace({**rows, **real}), "y", words, u, others, k, n, "(1)", own
+    )
+
+
+@pytest.mark.parametrize("name", ["a growth", "of two"])
+def test_points_and_parameters_follow_from_the_sum_of_squares_of_both(name: str) -> None:
+    entries = tuple(squares(name).entries)
+    found = [proof for proof in prove(Ledger(entries)) if proof.status is not ProofStatus.DEFINITION]
+    assert {proof.status for proof in found} == {ProofStatus.PROVED}
+    assert len(found) == len([each for each in entries if isinstance(each, Derivation)])
+
+
+def derived(name: str, of: str) -> Any:
+    """The last step of what is derived for a cell, or of the slope by it."""
+    entries = [entry for entry in squares(name).entries if isinstance(entry, Derivation)]
+    (entry,) = (each for each in entries if of in (str(each.claim.members[0]), each.claim.title))
+    return entry.steps[-1]
+
+
+WRONG = {
+    "a sign": lambda value: -value,
+    "half": lambda value: value / 2,
+    "an error that is none": lambda value: value.subs(row(Symbol("u_x")), 0),
+    "a little": lambda value: value * (1 + Symbol("f_G1", real=True) / 10**20),
+}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "of"),
+    [*((wrong, "f_at_x[k]") for wrong in WRONG)]
+    + [(wrong, "slope of the sum of squares by a") for wrong in ("a sign", "half", "a little")],
+)
+def test_a_wrong_point_or_slope_is_refuted(wrong: str, of: str) -> None:
+    step = derived("of two", of)
+    left, right = step.claim.members
+    claim = replace(step.claim, members=(left, WRONG[wrong](right)))
+    assert check_step(step).status is ProofStatus.PROVED
+    assert check_step(replace(step, claim=claim)).status is ProofStatus.REFUTED
+
+
+@pytest.mark.parametrize("named", ["x", "f_w", "f_residual"])
+def test_a_wrong_premise_of_a_slope_is_refuted(named: str) -> None:
+    """Where the point is, what a row weighs, what is left: each twice as much."""
+    step = derived("of two", "slope of the sum of squares by a")
+    changed = [
+        replace(premise, members=(premise.members[0], 2 * premise.members[1]))
+        if str(premise.members[0]) == f"{named}[k]"
+        else premise
+        for premise in step.premises
+    ]
+    assert changed != list(step.premises)
+    assert check_step(replace(step, premises=tuple(changed))).status is ProofStatus.REFUTED
+
+
+# ------------------------------------------------------------------------------ what is refused
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("f = fit(y, a * x, u={x: 'stated'})", "f: u says how uncertain y and x are, each of them"),
+        ("f = fit(y, a * x, u={x: 1, y: None})", "f: u says how uncertain y and x are, each of them"),
+        ("f = fit(y, a * x, u={y: 1, x: 'known'})", "f: u is a formula, or 'stated', not 'known'"),
+        ("f = fit(y, a * x, u={y: 1, z: 1})", "f: u is of columns that the model names; z[k] is none"),
+        ("f = fit(y, a * x, u={y: 1, 2 * x: 1})", "f: u is of columns that the model names; 2*x[k] is none"),
+        ("q = let(2 * x, 'twice'); f = fit(y, a * q, u={y: 1, q: 'stated'})", "nothing is stated of q"),
+        ("g = groups('s'); f = fit(y, a * x, u={y: 1, x: 1}, of=g)", "has errors in y[k] alone"),
+        ("f = fit(y, a**2 * x, u={y: 1, x: 1})", "not linear: say where to begin, a = unknown(..., start="),
+    ],
+)
+def test_a_wrong_fit_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], body: str, said: str
+) -> None:
+    head = "from loopsheet import Method, fit, groups, let, measured, unknown\n\n\nclass Wrong(Method):\n"
+    named = "".join(f"    {name} = measured('1', '{name}')\n" for name in "xyz")
+    write(tmp_path, f"{head}{named}    a = unknown('a')\n    {body}\n", "x [1],y [1],z [1],s\n1,2,3,A\n")
+    assert main(["check", str(tmp_path)]) == 2
+    assert said in capsys.readouterr().err
