@@ -97,11 +97,11 @@ def test_a_test_that_is_left_out_is_no_reading(made: Made) -> None:
     assert found.u("V") == pytest.approx([stdev(V)] * 5, rel=1e-14)
 
 
-def test_readings_that_are_all_the_same_have_no_scatter(made: Made) -> None:
+def test_paired_readings_that_are_all_the_same_have_the_error_of_their_digits(made: Made) -> None:
     table = "test,V [V],I [mA],phi [1]\n" + "".join(f"{n},5,{i},1.04\n" for n, i in enumerate(I, 1))
     found = spread(made('paired = ["V", "I", "phi"]', measurements=table))
-    assert found.u("V_mean").tolist() == [0]
-    assert found.budget("Z", 0).dof == 4
+    assert found.u("V_mean").tolist() == pytest.approx([0.5 / math.sqrt(3 * 5)])
+    assert found.budget("I_mean", 0).dof == 4
 
 
 def test_draws_of_readings_have_their_degrees_of_freedom(made: Made) -> None:
@@ -148,3 +148,15 @@ def test_a_single_number_does_not_scatter(tmp_path: Path, capsys: pytest.Capture
     toml.write_text(toml.read_text(encoding="utf-8").replace("u = 0.2", "scatter"), encoding="utf-8")
     assert main(["check", str(tmp_path / "h1")]) == 2
     assert "it is that of a measured column with two rows or more" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("more", ["", "; +-0.5 digits rect"])
+def test_equal_readings_have_the_error_of_their_digits(made: Made, more: str) -> None:
+    table = "test,V [V],I [mA],phi [1]\n" + "".join(f"{n},5.00,{i},1.04\n" for n, i in enumerate(I, 1))
+    at = made(f'V = "scatter{more}"\nI = "exact"\nphi = "exact"', measurements=table)
+    budget = spread(at).budget("V_mean", 0)
+    assert budget.u == pytest.approx(0.005 / math.sqrt(3 * 5), rel=1e-12)
+    found = [c for c in Study(at).computed.oddities if (c.kind, c.name) == ("scatter", "V")]
+    assert [(c.note, "all 5 readings are 5.00" in c.message) for c in found] == [("warning", True)] * (
+        not more
+    )

@@ -356,3 +356,89 @@ def test_planned_rows_share_what_measured_ones_share(both: Path) -> None:
     shared = {name: moved for (_, name), moved in moves.items() if np.count_nonzero(moved) > 1}
     assert shared.keys() == {"g", "z"}
     assert shared["g"] == pytest.approx([9.48e-8, 9.48e-8, 1.672e-7])
+
+
+# --- rows that have words ----------------------------------------------------------------------------------
+
+JAM = """
+from loopsheet import Method, groups, let, mean, measured
+
+class Jam(Method, headline="largest w"):
+    "Contents."
+    y = measured("mg", "reading")
+    jar = groups("jar")
+    w = let(mean(y, of=jar), "content", "mg")
+    largest = let(max(w), "largest", "mg")
+"""
+RECOVERY = """
+from loopsheet import Method, let, measured
+
+class Recovery(Method, headline="gain"):
+    "What was added."
+    w = measured("mg", "content")
+    f = measured("1", "factor")
+    gain = let(sum(w * f), "gain", "mg")
+"""
+READINGS = ("jam A,1.0\n", "jam A,1.2\n", "jam B,3.0\n", "jam B,3.2\n")
+
+
+def jars(at: Path, table: str, readings: tuple[str, ...] = READINGS) -> Path:
+    """A report that takes the content of each jar."""
+    for own, method, content in (
+        (at / "lab", JAM, "jar,y [mg]\n" + "".join(readings)),
+        (at, RECOVERY, table),
+    ):
+        own.mkdir(exist_ok=True)
+        (own / "workbook.py").write_text(method, encoding="utf-8")
+        (own / "measurements.csv").write_text(content, encoding="utf-8")
+        toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+        taken = '[measurements.taken]\nw = { from = "lab/out/values.json", cell = "w" }\n'
+        taken += '[uncertainty]\nf = "exact"\n'
+        u = '[uncertainty]\ny = "u = 0.1"\n'
+        (own / "report.toml").write_text(toml + (taken if own == at else u), encoding="utf-8")
+    build(at / "lab")
+    return at
+
+
+def told_of_rows(at: Path) -> list[tuple[str, str]]:
+    return [(c.note, c.message) for c in Study(at).computed.oddities if c.kind == "words" and c.name == "w"]
+
+
+@pytest.mark.parametrize("readings", [READINGS, READINGS[::-1]])
+def test_rows_with_words_are_matched_by_them(tmp_path: Path, readings: tuple[str, ...]) -> None:
+    """Whatever the order in either table, blanks and case as elsewhere; of each with its own errors."""
+    at = jars(tmp_path, "jar,f [1]\njam b,1\nJam A,-1\n", readings)
+    found = spread(at)
+    assert found.values.value["w"].tolist() == pytest.approx([3.1e-6, 1.1e-6])
+    assert found.values.value["gain"].tolist() == pytest.approx([2e-6])
+    ((note, text),) = told_of_rows(at)
+    assert (note, "of its word in" in text) == ("", True)
+    assert ("1 is w[2]" in text) == (readings == READINGS)
+
+
+def test_a_word_that_the_other_report_lacks_is_told_with_those_that_it_has(tmp_path: Path) -> None:
+    code, text = finding(jars(tmp_path, "jar,f [1]\njam B,1\njam C,-1\n"))
+    assert (code, "no w[jam C]" in text, "the rows jam A or jam B" in text) == ("LS437", True, True)
+
+
+@pytest.mark.parametrize("table", ["test,f [1]\n1,-1\n2,1\n", "by,f [1]\nAnna,-1\nBo,1\n"])
+def test_rows_that_only_one_report_has_words_for_go_by_number_and_this_is_told(
+    tmp_path: Path, table: str
+) -> None:
+    at = jars(tmp_path, table)
+    assert spread(at).values.value["gain"].tolist() == pytest.approx([2e-6])
+    ((note, text),) = told_of_rows(at)
+    assert (note, "jam A or jam B" in text) == ("warning", True)
+
+
+def test_one_row_is_taken_by_its_word(tmp_path: Path) -> None:
+    at = jars(tmp_path, "jar,f [1]\njam B,1\njam A,-1\n")
+    method = RECOVERY.replace("let, measured", "given, let, measured")
+    method += '    blank = given("mg", "blank")\n    less = let(gain - blank, "less", "mg")\n'
+    (at / "workbook.py").write_text(method, encoding="utf-8")
+    toml = (at / "report.toml").read_text(encoding="utf-8")
+    more = '[parameters]\nblank = { from = "lab/out/values.json", cell = "w[jam B]" }\n'
+    (at / "report.toml").write_text(toml.replace("[measurements]", f"{more}[measurements]"), encoding="utf-8")
+    found = spread(at)
+    assert found.values.value["less"].tolist() == pytest.approx([-1.1e-6])
+    assert found.budget("less", 0).u == pytest.approx(0.1e-6 / math.sqrt(2), rel=1e-6)

@@ -411,6 +411,8 @@ class Result(Form, frozen=True, kw_only=True):
         Columns that only lead to other cells, as those that a fit is computed by.
     cells : table of Column
         In the order of the sheet.
+    words : table of tables
+        What the rows of an index set are known by besides numbers: words of groups, names of rows.
     oddities : list of Oddity
     conformity : list of Conformity
         Missing where no cell has limits.
@@ -432,6 +434,7 @@ class Result(Form, frozen=True, kw_only=True):
     headline: list[Text] = field(default_factory=list)
     aside: list[Text] = field(default_factory=list)
     cells: dict[Text, Column]
+    words: dict[Text, dict[int, str]] | UnsetType = UNSET
     oddities: list[Oddity] = field(default_factory=list)
     conformity: list[Conformity] | UnsetType = UNSET
     proofs: dict[Text, Text]
@@ -440,6 +443,12 @@ class Result(Form, frozen=True, kw_only=True):
     published: list[Published]
     influences: Influences | UnsetType = UNSET
     referee: Referee | UnsetType = UNSET
+
+    def known(self, name: str) -> dict[Index, str]:
+        """The words of the rows of a column; none where they have numbers alone."""
+        axis = self.cells[name].axis if name in self.cells else None
+        every = {} if self.words is UNSET or axis is None else self.words
+        return {(number,): word for number, word in every.get(axis or "", {}).items()}
 
     def __post_init__(self) -> None:
         for each in () if self.conformity is UNSET else self.conformity:

@@ -419,6 +419,11 @@ class _Reader:
     def take_columns(self, measurements: Measurements, wanted: Mapping[str, object]) -> Measurements | None:
         """Take measured columns from the results of other reports; None, with findings, if one cannot be."""
         gone = [each.test for each in measurements.left_out]
+        every = rows(measurements.texts, measurements.left_out)
+        named = {
+            column: {test: row.get(column, "") for test, row in every.items()}
+            for column in measurements.remarks
+        }
         columns = self.workbook.measured if self.workbook else ()
         taken = {}
         for of in (of for of in columns if of.name in wanted):
@@ -427,7 +432,7 @@ class _Reader:
                 wrong_type(self.toml, self.findings, path, "a table", f"{of.name} = {TAKING}")
                 continue
             like = (of, self.toml, self.findings, self.result)
-            taken[of.name] = read_taken(said, path, *like, measurements.tests, gone)
+            taken[of.name] = read_taken(said, path, *like, measurements.tests, gone, named)
         known = {name: found for name, found in taken.items() if found}
         self.taken |= known
         if known.keys() != wanted.keys():

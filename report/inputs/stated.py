@@ -199,6 +199,8 @@ _NOTHING = Of()
 def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None, of: Of = _NOTHING) -> StatedErrors:
     """Read what is stated of a number.
 
+    Readings that are all the same are not exact: of them it is what their digits leave (JCGM 100, F.2.2.1).
+
     Parameters
     ----------
     text : str
@@ -228,6 +230,8 @@ def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None, of: O
         if why := next(filter(None, map(read.why_not, of.numbers)), ""):
             raise StatementError("LS431", part, start, why)
         parts.append(read)
+    if [part.said for part in parts] == [SCATTER] and not parts[0].absolute:
+        parts = [replace(parts[0], digits=Fraction(1, 2), shape=Shape.RECTANGULAR, dof=inf)]
     return StatedErrors(tuple(parts))
 
 

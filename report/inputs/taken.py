@@ -3,7 +3,9 @@
 [parameters]
 ball_mass = { from = "balance/values.json", cell = "m" }
 [measurements.taken]
-x_p = { from = "imprints/values.json", cell = "depth", unit = "um" }    # of each test the row of its number
+x_p = { from = "imprints/values.json", cell = "depth", unit = "um" }
+
+Of each test it is the row of the same word, where both have words of rows, else that of the same number.
 
 Two numbers of one report, or of two reports that rest on a third, share its errors: each keeps the name that
 it had where it was stated, and the sha256 of what that report was made from.
@@ -16,17 +18,20 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import PurePath
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, coherent, parse_unit
-from ..cells.address import address, index_text, named
+from ..cells.address import address, index_text, named, parts
 from ..distribution import PARTS, Error, Shape
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
+from .expected import row_of
 from .folders import output
 from .keys import ANY, TABLES
 from .number_text import read_unit_of
 from .parameters import wrong_type
+from .spelling import same
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -74,6 +79,10 @@ class Taken:
     """By two origins; between errors of that report."""
     spare: Mapping[int, Number] = field(default_factory=dict)
     """The same of tests that take no part, as far as there are such."""
+    told: str = ""
+    """How its rows were found, where either report knows rows by words; else empty."""
+    doubtful: bool = False
+    """Whether they may be others than those that are meant, though they have their numbers."""
 
     def of(self, rows: Iterable[int]) -> Taken:
         """The same of some rows."""
@@ -110,7 +119,8 @@ def read_taken(
     findings: Findings,
     read: Read,
     tests: Sequence[int] | None = None,
-    spare: Iterable[int] = (),
+    spare: Sequence[int] = (),
+    words: Mapping[str, Mapping[int, str]] = MappingProxyType({}),
 ) -> Taken | None:
     """Read what is to be taken; None, with a finding, if it cannot be.
 
@@ -124,8 +134,10 @@ def read_taken(
         Takes the name of a file and where it stands; returns what it holds, or None with a finding.
     tests : sequence of int or None
         Whose rows of a column are taken, in this order; None: one number.
-    spare : iterable of int
+    spare : sequence of int
         The tests that take no part.
+    words : mapping of str to mapping of int to str
+        The columns of words beside the tests, with the word of each.
     """
     for key in said:
         if key not in _KEYS:
@@ -148,14 +160,16 @@ def read_taken(
     if unit is None:
         return None
     reader, where = _Reader(found, file, cell, of, unit, at, findings), toml.trace(*path)
-    labels = [reader.index] if tests is None else [(test,) for test in tests]
-    if tests is not None and not reader.column():
+    if tests is None:
+        rows: Mapping[int, Index] | None = {0: reader.index}
+    else:
+        rows = reader.rows(tests, spare, words) if reader.column() else None
+    numbers = reader.numbers([rows[test] for test in tests or (0,)], where) if rows is not None else None
+    if rows is None or numbers is None:
         return None
-    numbers = reader.numbers(labels, where)
-    if numbers is None:
-        return None
-    printed, errors = zip(*numbers.values(), strict=True)
-    return Taken(file, cell, printed, errors, reader.correlations, reader.spare(spare, where))
+    printed, errors = zip(*(numbers[rows[test]] for test in tests or (0,)), strict=True)
+    gone = reader.spare({test: rows.get(test, ()) for test in spare}, where)
+    return Taken(file, cell, printed, errors, reader.correlations, gone, reader.told, reader.doubtful)
 
 
 def open_result(data: bytes, file: Path, name: str, at: Location, findings: Findings) -> Result | None:
@@ -201,7 +215,9 @@ class _Reader:
         self.at, self.findings = at, findings
         self.influences = None if found.influences is UNSET else found.influences
         self.correlations = _correlations(self.influences) if self.influences else {}
-        self.name, self.index = named(cell)
+        name, word = parts(cell) or ("", "")
+        self.name, self.index = named(cell, row_of(word, found.known(name)))
+        self.words, self.told, self.doubtful = found.known(self.name), "", False
         column = found.cells.get(self.name)
         self.unit = column.unit if column else ""
         self.cells = column.cells if column else {}
@@ -215,11 +231,42 @@ class _Reader:
                 return None
         return {label: self.number(label, where) for label in labels}
 
-    def spare(self, tests: Iterable[int], where: str) -> dict[int, Number]:
+    def spare(self, rows: Mapping[int, Index], where: str) -> dict[int, Number]:
         """The numbers of tests that take no part, as far as there are such; numbers were taken before."""
-        values = {test: self.cells.get((test,), (None, ""))[0] for test in tests}
+        values = {test: self.cells.get(row, (None, ""))[0] for test, row in rows.items()}
         known = (test for test, value in values.items() if value is not None and self.of.bounds.allow(value))
-        return {test: self.number((test,), where) for test in known if self.moved((test,)) is not None}
+        return {test: self.number(rows[test], where) for test in known if self.moved(rows[test]) is not None}
+
+    def rows(
+        self, tests: Sequence[int], spare: Sequence[int], words: Mapping[str, Mapping[int, str]]
+    ) -> Mapping[int, Index] | None:
+        """The row of each test, of those that take no part, too: None, with a finding, if one has none.
+
+        It is that of its word, where both reports know rows by words, else that of its number.
+        """
+        by_word = {same(word): row for row, word in self.words.items() if word}
+        unique = len(by_word) == len(self.words)
+        for column in words.values() if unique else ():
+            if by_word.keys().isdisjoint(map(same, column.values())):
+                continue  # what else is said of rows
+            missing = dict.fromkeys(column[test] for test in tests if same(column[test]) not in by_word)
+            if missing:
+                known = f"the rows {listing(self.words.values())}"
+                self.refuse(f"has no {listing(f'{self.name}[{word}]' for word in missing)}", known)
+                return None
+            rows = {test: by_word[same(word)] for test, word in column.items() if same(word) in by_word}
+            self.told = f"of each row that of its word in {self.file}"
+            if others := [
+                f"{test} is {address(self.name, row)}" for test, row in rows.items() if (test,) != row
+            ]:
+                more = ", ..." * (len(others) > 3)
+                self.told += f", whatever the numbers: {', '.join(others[:3])}{more}"
+            return rows
+        if self.words or any(map(any, (column.values() for column in words.values()))):
+            there = listing(self.words.values()) if self.words else "nothing but numbers"
+            self.told = f"of each row that of its number in {self.file}, where rows are called {there}"
+            self.doubtful = True
+        return {test: (test,) for test in (*tests, *spare)}
 
     def column(self) -> bool:
         """Whether what is named is a column with a row a test."""

@@ -54,6 +54,11 @@ REACH = 2
 """So many standard uncertainties, an interval of 95 %, lie above zero where nothing can lie below it."""
 
 
+def _taken(inputs: Inputs) -> list[str]:
+    """The columns that are taken from other reports, where either knows rows by words."""
+    return [name for name, taken in inputs.taken.items() if name in inputs.measured and taken.told]
+
+
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     """The names of all checks of a campaign's data, by kind, without computing anything."""
     workbook = inputs.workbook
@@ -66,8 +71,8 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
             *(each.name for each in workbook.curves),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
-        WORDS: list(workbook.groups),
-        SCATTERS: [name for name, _ in _scattering(sheet, inputs)],
+        WORDS: [*workbook.groups, *_taken(inputs)],
+        SCATTERS: [*_unmoved(inputs), *(name for name, _ in _scattering(sheet, inputs))],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -100,12 +105,23 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
             yield name, sorted(own)
 
 
+def _unmoved(inputs: Inputs) -> list[str]:
+    """The columns of which scatter alone is stated, and whose readings are all the same."""
+    return [
+        name
+        for name, stated in inputs.uncertainty.columns.items()
+        if [part.said for part in stated.parts] == [SCATTER]
+        and len({number.value for number in inputs.numbers(name)}) == 1
+    ]
+
+
 def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]]:
     """The columns whose scatter is stated, with the groups of their rows, if these are of one kind."""
     for name, stated in inputs.uncertainty.columns.items():
         axis = sheet[name].axis if name in sheet else None
         found = [*axis.grouped(sheet.axes)] if axis else []
-        if len(found) == 1 and any(part.said == SCATTER for part in stated.parts):
+        scatters = name not in _unmoved(inputs) and any(part.said == SCATTER for part in stated.parts)
+        if len(found) == 1 and scatters:
             yield name, found[0]
 
 
@@ -146,6 +162,8 @@ class _Oddities:
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from map(self.of_words, self.inputs.workbook.groups)
+        yield from map(self.of_taken, _taken(self.inputs))
+        yield from map(self.of_resolution, _unmoved(self.inputs))
         yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -410,6 +428,20 @@ class _Oddities:
                 said = f"{by_number} is {called} as it stands; in a sorted table it is another {column}'s"
                 return Check(WORDS, column, True, f"{said}: write {called}", each.at, note="warning")
         return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
+
+    def of_taken(self, column: str) -> Check:
+        """Whether rows of another report are found by words: its order may have made their numbers."""
+        taken = self.inputs.taken[column]
+        hint = ": columns of the same words in both say which is which" * taken.doubtful
+        note = "warning" * taken.doubtful
+        return Check(WORDS, column, True, f"{column}: {taken.told}{hint}", self.inputs.place, note=note)
+
+    def of_resolution(self, name: str) -> Check:
+        """Readings that are all the same: their scatter tells nothing, the digits of the instrument do."""
+        numbers = self.inputs.numbers(name)
+        said = f"{name}: all {len(numbers)} readings are {numbers[0].text}: their scatter is 0, and their "
+        said += f"digits leave more; say '{SCATTER}; +-0.5 digits rect', or what they share"
+        return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
 
     def of_scatter(self, name: str, axis: MemberAxis) -> Check:
         """Whether readings that stand in groups scatter about one mean as about those of their groups."""

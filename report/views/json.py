@@ -48,6 +48,11 @@ def values(report: Report) -> str:
             headline=[name for name in report.workbook.headline if name in report.sheet],
             aside=[column.name for column in report.sheet.columns if column.name in report.workbook.aside],
             cells={column.name: _column(report, column) for column in report.sheet.columns},
+            words={
+                axis: {label[0]: word for label, word in words.items()}
+                for axis, words in report.values.words.items()
+            }
+            or UNSET,
             oddities=oddities(report.oddities),
             conformity=[_decided(each) for each in report.uncertain().conformities] or UNSET,
             proofs=proof_statuses(report),
