@@ -105,3 +105,21 @@ def test_an_unknown_uncertainty_is_drawn_where_it_is_asked_for(
     told = capsys.readouterr().out
     assert "its first and second derivatives are 0 here" in told
     assert "Monte Carlo, 40000 draws" in told
+
+
+def test_an_estimate_that_no_draw_comes_near_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each of ten squares is above that of the estimate: their sum is, in all draws."""
+    formula, own = "sqrt(total((y - mean(y))**2))", ("1", "1", "1", "0", "9", " mm")
+    where = folder(tmp_path, formula, *own)
+    code = (where / "workbook.py").read_text(encoding="utf-8").replace("measured", "measured, total", 1)
+    (where / "workbook.py").write_text(code, encoding="utf-8")
+    rows = "\n".join(f"{10 + n % 2 / 1000}" for n in range(10))
+    (where / "m.csv").write_text(f"y [mm]\n{rows}\n", encoding="utf-8")
+    with (where / "report.toml").open("a", encoding="utf-8") as file:
+        file.write('[uncertainty]\ny = "u = 0.1 mm"\n')
+    assert main(["budget", "c", str(where), "--draws", "20000"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "the estimate lies below the draws: errors move it up" in told
+    assert "the interval of the draws holds" not in told

@@ -218,12 +218,18 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         yield "its ends are not known to the second digit of u: more draws would tell"
     if not budget.is_known:
         return  # of a sheet that is too large: there is nothing to compare with
-    far = wide(max(drawn.differences))
-    yield (
-        f"the law of propagation gives the same interval within {far}{unit}"
-        if drawn.validates
-        else f"the law of propagation is off by {far}{unit} at an end: the interval of the draws holds"
-    )
+    far, (low, high) = wide(max(drawn.differences)), drawn.symmetric
+    if drawn.validates:
+        yield f"the law of propagation gives the same interval within {far}{unit}"
+    elif low <= budget.value <= high:
+        yield f"the law of propagation is off by {far}{unit} at an end: the interval of the draws holds"
+    else:
+        side, way = ("below", "up") if budget.value < low else ("above", "down")
+        yield (
+            f"the law of propagation is off by {far}{unit} at an end, and the estimate lies {side} the "
+            f"draws: errors move it {way}, as they move a range or a standard deviation up, so that neither "
+            "interval is about the estimate"
+        )
 
 
 def _drawn(drawn: Distributed) -> dict[str, object]:
