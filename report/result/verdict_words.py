@@ -90,6 +90,8 @@ POSSIBLE = {
 
 EACH_ALONE = "each of these other digits with the first that are named of the other number"
 """What else of several numbers may stand is not said of both at once."""
+MOST_TOLD = 5
+"""So many explanations are told in sentences."""
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
     "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
@@ -287,8 +289,14 @@ def names(explanations: Sequence[Explanation]) -> str:
 
 
 def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
-    """What would explain that values do not come out together, or that nothing does."""
-    return tuple(f"perhaps {explained(each)}" for each in explanations) or (NOTHING_EXPLAINS,)
+    """What would explain that values do not come out together, or that nothing does.
+
+    Of many the first: they stand in the order in which the referee holds them for likely.
+    """
+    told = [f"perhaps {explained(each)}" for each in explanations[:MOST_TOLD]]
+    if more := len(explanations) - MOST_TOLD:
+        told += [f"and {more} more would: values.json has them"] if more > 0 else []
+    return tuple(told) or (NOTHING_EXPLAINS,)
 
 
 def why(found: Referee) -> tuple[str, ...]:

@@ -133,6 +133,8 @@ def _print(report: Report, found: Sequence[Check]) -> None:
         said += [f"{they(other, 'come')} out of other inputs that print as given"] * bool(other)
         said += [f"{they(within, 'differ')} within the stated uncertainties alone"] * bool(within)
         said += [f"{missing} cannot be checked"] * bool(missing)
+        rest = len(every) - same - known - other - within - missing
+        said += [f"{they(rest, 'differ')} otherwise"] * bool(rest)
         print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:
         if comparison.verdict != "same":
