@@ -128,6 +128,19 @@ def test_a_shape_behind_a_comma_is_told_where_it_stands(text: str, hint: str) ->
     assert refused.value.suggestion.startswith(hint)
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("u = 34,8 mm", "a decimal comma? write u = 34.8 mm"),
+        ("u = sqrt(x)", "what follows another formula than a share of the reading stands beside it"),
+    ],
+)
+def test_what_was_meant_is_guessed(text: str, hint: str) -> None:
+    with pytest.raises(StatementError, match="LS431") as refused:
+        read_statement(text, MM)
+    assert refused.value.suggestion.startswith(hint)
+
+
 def test_percent_of_a_pure_number_is_not_guessed() -> None:
     for unit, size in (("%", "0.5"), ("percent", "0.5"), ("1", "0.005"), ("ppm", "5000")):
         of = parse_unit(unit)

@@ -274,6 +274,11 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -
     limits = _LIMITS.match(first)
     if not begin and not limits and "%" not in first and "digit" not in first:
         raise StatementError("LS431", text, start, "say what the number is: u = or U =, or +- and a shape")
+    if others and others[0][0][:1].isdigit():
+        raise StatementError("LS431", *others[0], f"a decimal comma? write {first}.{others[0][0]}")
+    if "(" in first and begin:
+        hint = "what follows another formula than a share of the reading stands beside it, in a column u(...)"
+        raise StatementError("LS431", first, start, hint)
     word = None if begin else _SHAPE.search(first)
     opened = begin or limits
     begins = opened.end() if opened else 0
