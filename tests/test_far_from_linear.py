@@ -105,6 +105,9 @@ def test_an_unknown_uncertainty_is_drawn_where_it_is_asked_for(
     told = capsys.readouterr().out
     assert "its first and second derivatives are 0 here" in told
     assert "Monte Carlo, 40000 draws" in told
+    assert main(["build", str(tmp_path), "--to", "html"]) == 0
+    assert "(U is not known: its first and second derivatives are 0 here; use" in capsys.readouterr().out
+    assert "U is not known: its first" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
 def test_an_estimate_that_no_draw_comes_near_is_told(

@@ -219,14 +219,17 @@ class Said:
 
     def _sure(self, cell: Cell) -> tuple[Inlines, Inlines]:
         """The expanded uncertainty of a result, where one is known, and whether it may not hold."""
-        for budget in self.material.budgets:
-            if (budget.name, budget.label) == (cell.name, cell.label) and math.isfinite(budget.factor):
-                _, expanded = self.report.stated(cell.name, budget.value, budget.expanded)
-                factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
-                told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[cell.name].unit), factor
-                instead = ("; use ", Code(draws_of(budget.cell))) if budget.fails else ()
-                return told, ((budget.doubt, *instead) if budget.doubt else ())
-        return (), ()
+        budgets = self.report.uncertain().budgets
+        budget = next((b for b in budgets if (b.name, b.label) == (cell.name, cell.label)), None)
+        if budget is None:
+            return (), ()
+        told: Inlines = ()
+        if math.isfinite(budget.factor):
+            _, expanded = self.report.stated(cell.name, budget.value, budget.expanded)
+            factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
+            told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[cell.name].unit), factor
+        instead = ("; use ", Code(draws_of(budget.cell))) if budget.asks_for_draws else ()
+        return told, ((budget.doubt, *instead) if budget.doubt else ())
 
     def oddities(self) -> Blocks:
         """What there is to tell of the data themselves."""

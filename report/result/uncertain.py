@@ -180,10 +180,16 @@ class Budget:
         return f"{self.hold}: second order {'counts' if self.second else 'was not looked at'}"
 
     @property
+    def asks_for_draws(self) -> bool:
+        """Whether only draws tell an interval: first order plainly fails, or tells nothing."""
+        return self.fails or not self.is_known
+
+    @property
     def advice(self) -> str:
         """The doubt for where the number stands, and what to use instead where first order plainly fails."""
-        drawn = self.doubt and (self.fails or not self.is_known)
-        return f"{self.doubt}; use '{draws_of(self.cell)}'" if drawn else self.doubt
+        return (
+            f"{self.doubt}; use '{draws_of(self.cell)}'" if self.doubt and self.asks_for_draws else self.doubt
+        )
 
     @property
     def expanded(self) -> float:
