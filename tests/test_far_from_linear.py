@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from loopsheet.report.cli import main
+from loopsheet.report.judge import engines
 from loopsheet.report.study import Study
 
 WORKBOOK = """\
@@ -126,3 +127,18 @@ def test_an_estimate_that_no_draw_comes_near_is_told(
     told = " ".join(capsys.readouterr().out.split())
     assert "the estimate lies below the draws: errors move it up" in told
     assert "the interval of the draws holds" not in told
+
+
+def test_what_underflows_is_no_finding_and_what_is_off_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """exp(-2500) is 0 for a double, and 1e-1086 at 50 digits."""
+    own = ("0.0", "0.0", "1", "-9", "9", "")
+    where = folder(tmp_path, "exp(-2500 + x)", *own)
+    code = (where / "workbook.py").read_text(encoding="utf-8").replace("import Abs", "import exp, Abs", 1)
+    (where / "workbook.py").write_text(code, encoding="utf-8")
+    (numpy,) = Study(where).numpy
+    assert not numpy.findings
+    monkeypatch.setattr(engines, "SMALLEST", 0)
+    (numpy,) = Study(where).numpy
+    assert numpy.findings

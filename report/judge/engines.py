@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ..cells.layout import Layout
 from ..cells.values import CODES, Cell, Status, Values
 from ..engines import ENGINES, exact
+from ..quantity import SMALLEST
 from ..result.agreement import LIMIT, Agreement
 from ..sheet import Column, Sheet
 from .bounds import bounds
@@ -149,7 +150,9 @@ class _Tally:
             self.findings.append(f"{place}: {self.engine} says {theirs}, 50 digits say {exactly}")
 
     def add(self, place: str, difference: Any, bound: float, scale: Any) -> None:
-        """A cell with a number."""
+        """A cell with a number; what underflows is as near to the truth as doubles come."""
+        if difference < SMALLEST:
+            difference = 0
         relative = float(difference / scale) if scale else 0.0
         if relative > self.worst:
             self.worst, self.where = relative, place
