@@ -81,7 +81,7 @@ SHEET = "Sheet((d, *given.values(), l))"
             '"mm", "length',
             "l: 'mm' is no unit of SI without prefix, such as m",
         ),
-        (changed(UNIT, '"m^2", "length'), 'Column("l"', "l (H.1): the unit m^2 is m^2, but the formula"),
+        (changed(UNIT, '"m^2", "length'), 'Column("l"', "l (H.1): the unit is m^2, but the formula"),
         (changed('"d", "m", "diff', '"d", "furlongg", "diff'), '"furlongg"', "cannot be read at 'furlongg'"),
         (shows('headline=("L",)'), '"L"', "there is no cell 'L', which headline names; there is l_S, "),
         (shows('headline=("l",)'), '"l",)', "'l' has many rows, and headline names single numbers"),

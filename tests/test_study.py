@@ -111,14 +111,14 @@ def test_why_proves_what_a_number_comes_from_and_show_nothing(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     proved: list[str] = []
-    real = proof._prove_entry
+    real = proof.prove_entry
 
     def counted(entry, known, ledger):  # type: ignore[no-untyped-def]
         if hasattr(entry, "steps"):
             proved.append(entry.claim.label)
         return real(entry, known, ledger)
 
-    monkeypatch.setattr(proof, "_prove_entry", counted)
+    monkeypatch.setattr(proof, "prove_entry", counted)
     monkeypatch.setattr(stages, "judged", None)
     monkeypatch.setattr(stages, "refereed", None)
     assert main(["show", "alpha", "paper"]) == 0

@@ -148,7 +148,7 @@ class Spread:
         for cells, own in self._blocks(name) if name in self._known else ():
             first, second = self._orders(cells, own)
             found[:, cells[0][1] : cells[-1][1] + 1] = first, np.nan_to_num(second)
-        found[:, self.values.status[name] != Status.OK] = np.nan
+        found[0, self.values.status[name] != Status.OK] = np.nan
         return found
 
     def _blocks(self, name: str) -> Iterator[tuple[list[tuple[str, int]], Any]]:
@@ -315,7 +315,8 @@ class Spread:
         """Those of some cells that have a value, by their addresses, and what terms of second order add."""
         second = np.nan_to_num(self._more(cells, own))
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
-        finite = np.isfinite(own @ np.zeros(own.shape[1])) & np.isfinite(self._orders(cells, own)[0])
+        with np.errstate(invalid="ignore"):  # what is beyond all doubles times 0
+            finite = np.isfinite(own @ np.zeros(own.shape[1])) & np.isfinite(self._orders(cells, own)[0])
         known = [n for n, (name, row) in enumerate(cells) if finite[n] and not self.values.status[name][row]]
         return {at[n]: n for n in known}, {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0}
 
