@@ -347,7 +347,7 @@ class Oil(Method):
         ("104.22,", EXACT, 0, "1 value: 1 prints the same"),
         ("104.40,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
         ("104.50,", WITHIN, 3, "1 differs within the stated uncertainties alone\n"),
-        ("104.60,", UNREACHABLE, 3, "0 print the same, 0 differ as is known\n"),
+        ("104.60,", UNREACHABLE, 3, "0 print the same, 0 differ as is known, 1 differs otherwise\n"),
         ("104.40,differs", WITHIN, 0, "1 differs as is known"),
     ],
 )
