@@ -106,7 +106,7 @@ class MethodBody(dict[str, Any]):
                     f"{over_rows.word}() of several formulas is of each row: it has no of={of!s}"
                 )
             return of_several(*map(exact, formulas))
-        (one,) = formulas
+        one = formulas[0]
         return of_several(*map(exact, one)) if isinstance(one, Iterable) else self.ordered(over_rows, one, of)
 
     def ordered(self, taken: type[OrderStatistic], formula: Any, of: Any = None) -> Expr:
@@ -147,10 +147,9 @@ class MethodBody(dict[str, Any]):
     def number(self, formula: Any, of: Any = None) -> Expr:
         """How many rows there are, where it stands; of a formula, in how many rows it has a value."""
         over = self.axis_of(formula)
+        every, by = (over or self.axis).size, ""
         if of is not None:
             every, over, by = self._of_groups(1, of), over and self.axis, f"_by_{of.row}"
-        else:
-            every, by = (over or self.axis).size, ""
         if over is None:
             return every
         is_cell = isinstance(formula, Indexed) and formula.indices == (over.index,)
@@ -203,8 +202,7 @@ class MethodBody(dict[str, Any]):
 
     def _inputs(self, name: str) -> set[str]:
         """What a name rests on that nothing computes."""
-        below = self._below(name)
-        return set[str]().union(*(self._inputs(name_of(each)) for each in below)) if below else {name}
+        return set[str]().union(*(self._inputs(name_of(each)) for each in self._below(name))) or {name}
 
     def _below(self, name: str) -> list[Expr]:
         """The cells that the rule of a column names."""
@@ -348,8 +346,8 @@ class MethodBody(dict[str, Any]):
         """All columns: the sums and counts that one result rests on leave out the same rows.
 
         Those are rows in which what one of them, or what is computed from them, asks for has no value; what
-        rests on a sum itself cannot be asked. As a sum has one value, results that share it are of the
-        same rows.
+        rests on a sum cannot be asked. As a sum has one value, results that share it are of the same rows.
+        A fit has its own: what is read off a calibration line asks nothing of the standards.
         """
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
@@ -360,8 +358,8 @@ class MethodBody(dict[str, Any]):
         rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
 
         bound: list[set[str]] = []  # names of which those in one set rest on sums that they share
-        for names in below.values():
-            if names & sums:
+        for column in sheet.columns:
+            if (names := self._up_to_fits(sheet, column)) & sums:
                 apart = [each for each in bound if not each & names & sums]
                 bound = [*apart, names.union(*(each for each in bound if each not in apart))]
 
@@ -375,6 +373,12 @@ class MethodBody(dict[str, Any]):
         columns = (replace(c, spare=False) if c.spare and c.name in named else c for c in sheet.columns)
         whole = (replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
         return told_apart(whole, self.fits)
+
+    def _up_to_fits(self, sheet: Sheet, column: Column) -> set[str]:
+        """The names of a column and of what it rests on, without the results of another fit."""
+        fits = ({each.name for each in fit.columns} for fit in self.fits)
+        left = set[str]().union(*(names for names in fits if column.name not in names))
+        return {column.name, *(each.name for each in sheet.ancestors(column, without=left))}
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""

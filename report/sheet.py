@@ -6,7 +6,7 @@ columns' names, so the graph of what depends on what is read from the algebra an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from keyword import iskeyword
@@ -227,12 +227,11 @@ class Sheet:
         """The columns that are computed from a column directly."""
         return tuple(c for c in self.columns if any(p.name == column.name for p in self.precedents(c)))
 
-    def ancestors(self, column: Column) -> tuple[Column, ...]:
-        """All columns that a column rests on, in order of evaluation."""
-        seen: set[str] = set()
-        waiting = [column]
+    def ancestors(self, column: Column, without: Collection[str] = ()) -> tuple[Column, ...]:
+        """All columns that a column rests on, but not by way of some, in order of evaluation."""
+        seen, waiting = {column.name}, [column]
         while waiting:
-            new = [p for p in self.precedents(waiting.pop()) if p.name not in seen]
+            new = [p for p in self.precedents(waiting.pop()) if p.name not in {*seen, *without}]
             seen |= {precedent.name for precedent in new}
             waiting += new
         return tuple(c for c in self.order if c.name in seen and c.name != column.name)

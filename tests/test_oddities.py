@@ -367,7 +367,6 @@ def test_to_expect_what_does_not_happen_is_a_finding(tmp_path: Path, address: st
         ('"test2" = "x"', "LS505", "did you mean 'test 2'?"),
         ('"alpha[1]" = "x"', "LS506", "alpha has no index '1'"),
         ('"alpha[2-1]" = "x"', "LS506", "alpha has no index '2-1'"),
-        ('alpha = "x"', "LS505", "the sheet has no cell 'alpha'"),
         ('"alpha_mean[1]" = "x"', "LS506", "alpha_mean has no index '1'"),
         ('"alhpa[1-2]" = "x"', "LS505", "did you mean 'alpha'?"),
         ('"alpha[1-2" = "x"', "LS505", "the sheet has no cell 'alpha[1-2'"),

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import TypeVar
 
-from ..cells.address import parts
 from ..messages.errors import Findings
-from .expected import NO_WORDS, Expectation, Words, check_expected, row_of
+from .expected import NO_WORDS, Expectation, Words, check_expected
 from .inputs import Inputs
-from .limits import Limits, check_limits, of_every_row
+from .limits import check_limits, of_every_row
 from .published import check_published
 
 __all__ = ["check_cells"]
-
-_Of = TypeVar("_Of", Expectation, Limits)
 
 
 def check_cells(
@@ -55,10 +51,14 @@ def check_cells(
         # Groups are known by their words, also those that have no row left.
         return index in words[name] if words.get(name) else not gone.isdisjoint(index)
 
+    def is_gone(said: Expectation) -> bool:
+        name, index = said.cell
+        return all(rests_on_gone(name, row) for row in said.rows or (index,))
+
     inputs = replace(
         inputs,
-        expected=tuple(_of_words(inputs.expected, words)),
-        limits=tuple(_of_words(inputs.limits, words)),
+        expected=tuple(each.of_words(words) for each in inputs.expected),
+        limits=tuple(each.of_words(words) for each in inputs.limits),
         published=tuple(each.of_words(words) for each in inputs.published),
         published_u=tuple(each.of_words(words) for each in inputs.published_u),
     )
@@ -67,7 +67,7 @@ def check_cells(
     undecided = tuple(each for each in inputs.limits if rests_on_gone(*each.cell))
     kept = replace(
         inputs,
-        expected=tuple(each for each in inputs.expected if not rests_on_gone(*each.cell)),
+        expected=tuple(each for each in inputs.expected if not is_gone(each)),
         limits=tuple(each for each in of_every_row(inputs.limits, cells) if each not in undecided),
         undecided=undecided,
         published=tuple(value for value in inputs.published if value not in aside),
@@ -81,13 +81,3 @@ def check_cells(
     check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings, words)
     findings.check()
     return kept
-
-
-def _of_words(said: Iterable[_Of], words: Words) -> Iterator[_Of]:
-    """What is said of cells, with the rows that words stand for: ``slope[steel]``.
-
-    `words`: as for :func:`~loopsheet.report.inputs.expected.check_expected`.
-    """
-    for each in said:
-        name, word = parts(each.address) or ("", "")
-        yield each if each.cell[1] else replace(each, row=row_of(word, words.get(name, {})))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
 
-from ..cells.address import address, index_text, named, parts
+from ..cells.address import index_text, named, parts
 from ..messages.errors import Findings, Location, listing, suggest
 from .parameters import wrong_type
 
@@ -40,25 +40,27 @@ class OfCell(Protocol):
         """Where it was written."""
 
     @property
-    def cell(self) -> tuple[str, tuple[int, ...]]:
-        """Column and index; no column for a test."""
+    def cell(self) -> tuple[str, Index]:
+        """Column and index; no column for a test, no index for a whole column."""
 
 
 @dataclass(frozen=True)
 class Expectation:
-    """A cell that is expected to be odd, or a test whose cells are."""
+    """A cell that is expected to be odd, or several of a column, or a test whose cells are."""
 
     address: str
-    """As it was written: ``alpha[1-2]``, ``alpha_mean``, ``test 3``."""
+    """As it was written: ``alpha[1-2]``, ``alpha_mean``, ``c``, ``c[blank]``, ``test 3``."""
     reason: str
     at: Location
     """Where it was written."""
-    row: tuple[int, ...] | None = None
-    """Which row its word stands for, where one does."""
+    rows: tuple[Index, ...] = ()
+    """Which rows its word stands for, where one does."""
 
     @property
-    def cell(self) -> tuple[str, tuple[int, ...]]:
-        """Column and index of the cell; no column for a test. What is no address is a cell that there is not.
+    def cell(self) -> tuple[str, Index]:
+        """Column and index of the cell, or of the first; no column for a test, no index for a whole column.
+
+        What is no address is a cell that there is not.
 
         >>> Expectation("alpha[1-2]", "one height", Location()).cell
         ('alpha', (1, 2))
@@ -67,12 +69,20 @@ class Expectation:
         """
         if row := _ROW.fullmatch(self.address):
             return "", (int(row["number"]),)
-        return named(self.address, self.row)
+        return named(self.address, self.rows[0] if self.rows else None)
 
-    def covers(self, cell: str, index: tuple[int, ...], tests: Collection[int]) -> bool:
-        """Whether it speaks of a cell, by itself or by one of the tests that it rests on."""
+    def of_words(self, words: Words) -> Expectation:
+        """The same with the rows that its word stands for: all readings of ``c[blank]``."""
+        name, word = parts(self.address) or ("", "")
+        found = () if self.cell[1] else rows_of(word, words.get(name, {}))
+        return replace(self, rows=tuple(found))
+
+    def covers(self, cell: str, index: Index, tests: Collection[int]) -> bool:
+        """Whether it speaks of a cell, by itself, by its column or by one of the tests that it rests on."""
         name, own = self.cell
-        return own[0] in tests if not name else (name, own) == (cell, index)
+        if not name:
+            return own[0] in tests
+        return name == cell and (not own or index in (self.rows or (own,)))
 
 
 def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
@@ -89,9 +99,14 @@ def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
     )
 
 
-def row_of(word: str, words: Mapping[Index, str]) -> tuple[int, ...] | None:
+def rows_of(word: str, words: Mapping[Index, str]) -> list[Index]:
+    """The rows that a word stands for."""
+    return [index for index, own in words.items() if own == word and word]
+
+
+def row_of(word: str, words: Mapping[Index, str]) -> Index | None:
     """The only row that a word stands for."""
-    found = [index for index, own in words.items() if own == word and word]
+    found = rows_of(word, words)
     return found[0] if len(found) == 1 else None
 
 
@@ -132,10 +147,7 @@ def check_expected(
             findings.add("LS505", each.at, text=each.address, known=known, suggestion=suggestion)
             continue
         indices = cells[name][1] if name else {(test,) for test in tests}
-        if name and not index and index not in indices:
-            known = listing(address(name, one) for one in sorted(indices))
-            findings.add("LS505", each.at, text=each.address, known=known, suggestion="")
-        elif index not in indices:
+        if index and index not in indices:
             known = rows(indices, words.get(name, {}))
             findings.add("LS506", each.at, name=name or row, text=index_text(index), known=known)
 

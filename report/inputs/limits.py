@@ -21,11 +21,11 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, examples, is_pure, parse_open
-from ..cells.address import address, named
+from ..cells.address import address, named, parts
 from ..distribution import LEVEL
 from ..messages.errors import listing
 from ..quantity import Bounds, behind, span
-from .expected import NO_WORDS, Words, check_expected
+from .expected import NO_WORDS, Words, check_expected, row_of
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
@@ -84,6 +84,11 @@ class Limits:
     def cell(self) -> tuple[str, tuple[int, ...]]:
         """Column and index of the cell; what is no address is a cell that there is not."""
         return named(self.address, self.row)
+
+    def of_words(self, words: Words) -> Limits:
+        """The same with the row that its word stands for: ``slope[steel]``."""
+        name, word = parts(self.address) or ("", "")
+        return self if self.cell[1] else replace(self, row=row_of(word, words.get(name, {})))
 
     @property
     def ends(self) -> tuple[float, float]:
