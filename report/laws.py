@@ -19,7 +19,6 @@ __all__ = ["Exponential", "Law", "Samples", "TruncatedNormal"]
 
 Array = NDArray[np.float64]
 
-_HALVINGS = 200
 _NODES = 200
 _FAR = 12.0
 """Beyond so many standard deviations a normal distribution holds less than a double can tell of 1."""
@@ -72,8 +71,7 @@ class Law(ABC):
         low, high = 0.0, 1.0
         while self.below(high) - self.below(-high) < level:
             low, high = high, 2 * high
-        for _ in range(_HALVINGS):
-            middle = (low + high) / 2
+        while low < (middle := (low + high) / 2) < high:
             if self.below(middle) - self.below(-middle) < level:
                 low = middle
             else:

@@ -8,6 +8,7 @@ changes are taken from sheets that are computed a little to either side.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,8 +105,12 @@ class SecondOrder:
             if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
         }
         """What rests on a function that has a corner: near it, derivatives jump."""
-        own = np.eye(len(sources))
-        beside = _beside(values, program, sources, root @ np.hstack([own, -own]))
+        number, some = len(sources), np.random.default_rng(1).standard_normal((len(sources), 1))
+        sides = np.hstack([np.eye(number), -np.eye(number)])
+        steps = np.hstack([sides, FAR / STEP * sides, some @ np.array([[1.0, 2.0, 4.0]])])
+        every = _beside(values, program, sources, root @ steps)
+        ends = pairwise((0, 2 * number, 4 * number, 4 * number + 3))
+        beside, far, together = (every.of_batch(slice(*each)) for each in ends)
         self._along = Numbers(chain, beside).go()
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
             self._through = self._along.whole @ self.weights
@@ -122,10 +127,7 @@ class SecondOrder:
         """What has cells of which the terms of second order take away more than half of the first."""
         self.bending = set[str]()
         """What has cells that first order tells near their values, and not as far away as U reaches."""
-        self._value = values.value
-        self._far = _beside(values, program, sources, root @ np.hstack([own, -own]) * (FAR / STEP)).value
-        some = np.random.default_rng(1).standard_normal((len(sources), 1))
-        together = _beside(values, program, sources, root @ some @ np.array([[1.0, 2.0, 4.0]]))
+        self._value, self._far = values.value, far.value
         self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
         """Which cells change along all errors at once as a power of them that is higher than the first."""
 
