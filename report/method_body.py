@@ -8,14 +8,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Basic, Dummy, Expr, Float, Indexed, Max, Min, Rational, Sum, Symbol, sympify
+from sympy import Add, Expr, Indexed, Max, Min, Sum, Symbol, sympify
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
-from ..derivations.grounds import says
 from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
 from ..derivations.unit_text import of_differences
 from .axis import Axis, GroupAxis, MemberAxis, PairAxis
-from .cells.units import named_unit_of, unit_of
+from .cells.units import named_unit_of
 from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
@@ -43,22 +42,10 @@ __all__ = ["MethodBody"]
 
 _EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
 """By their names in a body: of several formulas, and over the rows of one."""
-_NO_ALGEBRA = "{what} is of rows in groups, of which no proof is known: claim it without"
 
 
 def _numbers(*names: str) -> Iterator[Symbol]:
     return (Symbol(name, integer=True, positive=True) for name in names)
-
-
-def _typed(formula: Expr) -> Expr:
-    """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
-    typed: Expr = formula.xreplace(_fractions(formula))
-    return typed
-
-
-def _fractions(*formulas: Expr) -> dict[Expr, Expr]:
-    """The decimal fractions in formulas, as fractions."""
-    return {each: Rational(repr(float(each))) for formula in formulas for each in formula.atoms(Float)}
 
 
 class MethodBody(dict[str, Any]):
@@ -160,55 +147,6 @@ class MethodBody(dict[str, Any]):
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
         return self.columns[name].cell
 
-    def derivative(self, formula: Expr, by: Expr) -> Expr:
-        """The derivative by a quantity, through the formulas of all that rests on it."""
-        if not isinstance(by, Indexed | Symbol):
-            raise SheetError(f"a derivative is taken by what has a name, not by {by}")
-        name, found = name_of(by), formula
-
-        def other() -> list[Expr]:
-            return [cell for cell in self._cells(found) if name_of(cell) != name]
-
-        while resting := [cell for cell in other() if self._rests(cell, name)]:
-            for cell in resting:
-                column = self.columns.get(name_of(cell))
-                rule = None if column is None else column.rule
-                if column is None or not isinstance(rule, Formula) or rule.expression.has(*REDUCTIONS):
-                    raise SheetError(f"{cell} rests on {by}, and not by a formula of one row: write it out")
-                place = dict(zip(column.cell.args[1:], cell.args[1:], strict=True))
-                found = found.xreplace({cell: _typed(rule.expression).xreplace(place)})
-        if found.has(*REDUCTIONS):
-            raise SheetError(f"{formula} is taken over rows: write its derivative by {by} out")
-        below = self._inputs(name)
-        for beside in (cell for cell in other() if self._inputs(name_of(cell)) & below):
-            raise SheetError(f"{by} and {beside}, beside it, rest on the same: what stays as it is?")
-        # The second of a pair is not the first.
-        apart = {
-            cell: Dummy(real=True) for cell in self._cells(found) if name_of(cell) == name and cell != by
-        }
-        if apart and not found.has(by):
-            raise SheetError(f"{formula} has no {by}: say first(...) or second(...) of a pair")
-        slope: Expr = found.xreplace(apart).diff(by).xreplace({own: cell for cell, own in apart.items()})
-        return slope
-
-    def _cells(self, formula: Basic) -> list[Expr]:
-        """What a formula names, each cell once, in an order that is always the same."""
-        return sorted({each.cell for each in self._named_in(formula)}, key=str)
-
-    def _rests(self, cell: Expr, on: str) -> bool:
-        """Whether a cell is computed from what a name stands for."""
-        own = name_of(cell)
-        return own == on or any(self._rests(each, on) for each in self._below(own))
-
-    def _inputs(self, name: str) -> set[str]:
-        """What a name rests on that nothing computes."""
-        return set[str]().union(*(self._inputs(name_of(each)) for each in self._below(name))) or {name}
-
-    def _below(self, name: str) -> list[Expr]:
-        """The cells that the rule of a column names."""
-        parts = self.columns[name].expressions if name in self.columns else ()
-        return [each for part in parts for each in self._cells(part) if name_of(each) != name]
-
     def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
         """The groups of the rows that have one word in a column."""
         if len({index, size}) < 2 or not all(each.isidentifier() for each in (by, name, index, size)):
@@ -304,21 +242,22 @@ class MethodBody(dict[str, Any]):
             )
         return found[0] if found else None
 
-    def _named_in(self, *formulas: Any) -> Iterator[Reference]:
+    def named_in(self, *formulas: Any) -> Iterator[Reference]:
+        """What formulas name, with the rows that they take it from."""
         sums = summed_over([*self.axes, *(axis.members for axis in self.groups)])
         return (cell for formula in formulas for cell in references(formula, sums))
 
-    def _is_grouped(self, *formulas: Expr) -> bool:
+    def is_grouped(self, *formulas: Expr) -> bool:
         """Whether formulas are of the rows of a group, or of the group of a row: algebra knows neither."""
         words = {axis.index_name for axis in self.groups}
-        within = any(cell.over == self.axis and cell.index in words for cell in self._named_in(*formulas))
+        within = any(cell.over == self.axis and cell.index in words for cell in self.named_in(*formulas))
         both = {self.axis, *self.groups}.intersection(self._rows_of(*formulas))
         return within or len(both) > 1 or any(formula.has(Member) for formula in formulas)
 
     def _rows_of(self, *formulas: Any) -> list[Axis]:
         """All rows that formulas name."""
         every = [sympify(formula) for formula in formulas]
-        cells = self._named_in(*every)
+        cells = self.named_in(*every)
         named = {cell.index for cell in cells if cell.over is None}
         named |= {str(told.args[1]) for formula in every for told in formula.atoms(Member)}
         return [axis for axis in self.axes if not named.isdisjoint(axis.named)]
@@ -336,7 +275,7 @@ class MethodBody(dict[str, Any]):
         formula = exact(formula)
         if self.axis_of(formula) != self.axis:
             raise SheetError(f"{formula} has no value for each row, of which a pair has two")
-        if self._is_grouped(formula):
+        if self.is_grouped(formula):
             formula = self._of_rows(formula, self.axis)
         found: Expr = formula.subs(self.axis.index, member)
         return found
@@ -449,7 +388,7 @@ class MethodBody(dict[str, Any]):
             **{**said.column, "positive": positive},
         )
 
-    def _number(self) -> str:
+    def free_number(self) -> str:
         """The next number of an equation."""
         every = Ledger(tuple(self.entries)).equations()
         taken = dict.fromkeys(equation.number for equation in every if not equation.own)
@@ -473,11 +412,11 @@ class MethodBody(dict[str, Any]):
         for formula in (said.model, *said.u.values()):
             if isinstance(formula, Expr) and rows in self.groups:
                 self._refuse_rows(name, formula, rows)
-            if isinstance(formula, Expr) and self._is_grouped(formula, said.observed):
+            if isinstance(formula, Expr) and self.is_grouped(formula, said.observed):
                 raise SheetError(f"{name}: {formula} is of rows in groups, which no fit takes", name)
         found = DeclaredFit(
             name, rows, self.columns, said.observed, said.model, sought, said.u,
-            said.label or self._number(), self.own, said.of,
+            said.label or self.free_number(), self.own, said.of,
         )  # fmt: skip
         for column in found.columns:
             if column.name in self.columns:
@@ -510,7 +449,7 @@ class MethodBody(dict[str, Any]):
     def _refuse_rows(self, name: str, formula: Expr, groups: Axis) -> None:
         """Say what a fit over the groups takes instead of what has a value for each of their rows."""
         word = next((word for word, value in self.items() if value is groups), groups.row)
-        named = (cell for cell in self._named_in(formula) if cell.over is None)
+        named = (cell for cell in self.named_in(formula) if cell.over is None)
         if of_rows := sorted({cell.name for cell in named if cell.index == self.axis.index_name}):
             raise SheetError(
                 f"{name}: {of_rows[0]} has a value for each {self.axis.row}, and what is fitted one for each "
@@ -536,67 +475,10 @@ class MethodBody(dict[str, Any]):
         self.aside.append(own)
         return replace(sought, start=column.cell)
 
-    def claimed(
-        self, left: Expr, right: Expr, meaning: str, because: str, from_: Sequence[Any] | None, label: str
-    ) -> None:
-        """Put a claim into the ledger, with what it is to be derived from."""
-        if self._is_grouped(left, right):
-            raise SheetError(_NO_ALGEBRA.format(what=f"'{meaning}'"))
-        found = self._premises((left, right) if from_ is None else from_, meaning, everything=from_ is None)
-        row = Symbol("i", integer=True, positive=True)
-        members = tuple(_typed(side).subs(self.axis.index, row) for side in (left, right))
-        conditions = tuple(dict.fromkeys(each for premise, _ in found for each in premise.conditions))
-        equation = Equation(
-            label or self._number(),
-            members,
-            because or "it follows by algebra",
-            title=meaning,
-            conditions=conditions,
-        )
-        for premise, _ in found:
-            if says(equation, premise):
-                raise SheetError(
-                    f"'{meaning}' is what {premise.label} says of itself: there is nothing to prove"
-                )
-        zero = Equation(equation.label, (left, left - right), "", title=meaning)
-        unit_of(
-            self.columns, Column(meaning, self.axis_of(left, right), Formula(zero))
-        )  # as long as both have one unit
-        self.claims.append(Claimed(equation.label, meaning, self.axis_of(left, right), left, right))
-        for premise, unknown in found:
-            if self._is_grouped(*premise.members):
-                raise SheetError(_NO_ALGEBRA.format(what=f"{unknown}, on which '{meaning}' rests,"))
-        premises, unknowns = zip(*found, strict=True) if found else ((), ())
-        self.entries.append(Derivation.of(equation, premises, unknowns, "Put in what the quantities are."))
-
-    def _premises(
-        self, formulas: Sequence[Any], meaning: str, everything: bool
-    ) -> list[tuple[Equation, Expr]]:
-        """What says of the quantities in formulas what they are, and what each is solved for."""
-        found: dict[str, tuple[Equation, Expr]] = {}
-        left = list(formulas)
-        while left:
-            named = {name_of(cell) for cell in left.pop().atoms(Symbol, Indexed)} & self.columns.keys()
-            for column in (self.columns[name] for name in sorted(named - found.keys())):
-                if isinstance(column.rule, Given):
-                    continue
-                if not isinstance(column.rule, Formula):
-                    raise SheetError(
-                        f"{column.name} is sought, it has no formula to put in: say what '{meaning}' follows "
-                        "from without it, from_=[...]",
-                        column.name,
-                    )
-                equation, cell = column.rule.equation, column.cell
-                if typed := _fractions(*equation.sides):
-                    equation = equation.at(typed)
-                found[column.name] = equation, cell.base if isinstance(cell, Indexed) else cell
-                left += [equation.value] if everything else []
-        return list(found.values())
-
     def _aside_of(self, unknown: str, side: Expr) -> Expr:
         """A side of an equation, as a column if it names the group of a row, and not what is sought."""
         named = {each.name for each in side.atoms(Symbol)}
-        return self._of_rows(side, self.axis) if self._is_grouped(side) and unknown not in named else side
+        return self._of_rows(side, self.axis) if self.is_grouped(side) and unknown not in named else side
 
     def _computed(self, name: str, said: ComputedLine) -> Column:
         if self.axis in self._rows_of(*said.sides):  # whichever side names the row
@@ -611,7 +493,7 @@ class MethodBody(dict[str, Any]):
         column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
-        equation = Equation(said.label or self._number(), sides, said.because, kind, said.meaning)
+        equation = Equation(said.label or self.free_number(), sides, said.because, kind, said.meaning)
         self.entries.append(equation)
         if said.ends:
             if column.symbol not in named:

@@ -1,0 +1,94 @@
+"""The workbook that the body of a method makes: its sheet, its ledger and what a report shows of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from ..derivations.equation import Ledger
+from ..derivations.vocabulary import Quantity, Vocabulary, spelt
+from .charts import Drawn
+from .column import Column, SheetError
+from .method_body import MethodBody
+from .method_lines import Declaration
+from .quantity import Bounds
+from .sheet import Sheet
+from .workbook import Measured, Parameter, Workbook, tables_of
+
+__all__ = ["workbook_of"]
+
+
+def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
+    """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has.
+
+    Nothing else is let in of an input; a parameter of a fit may be found elsewhere.
+    """
+    low, high = bounds.low, bounds.high
+    known = (low, high) if is_sure else (None, None)
+    if low is None or high is None:
+        (end,) = (each for each in (low, high) if each is not None)
+        far = max(abs(end), 1.0) * (1 if high is None else -1)
+        low, high = sorted((end + far / 2, end + 2 * far))
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
+    return Quantity(*own, bool(column.positive), "", *known)
+
+
+def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
+    """The workbook of a body that is declared whole; what is wrong with all of it is told now.
+
+    `headline`: the names of the results; of none, those of which nothing else is computed.
+    """
+    entries = tuple(body.entries)
+    for line in body.unnamed:
+        what = f"'{line.meaning}'" if isinstance(line, Declaration) else "a fit"
+        raise SheetError(f"{what} has no name: a line is a name, =, and what is declared")
+    for each in headline:
+        if each not in body.columns:
+            raise SheetError(f"the headline names {each}, which is not declared", each)
+    for announced in body.announced:
+        if announced not in body.columns:
+            raise SheetError(
+                f"{announced} is announced as unknown, and neither a root nor a fit finds it", announced
+            )
+    if not entries:
+        raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
+    columns = body.whole
+    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
+    Sheet((*columns, *curves.columns))  # a name that both have is told now
+    used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
+    scalars = (c.name for c in columns if c.axis is None and c.equation)
+    last = [each for each in scalars if body.of_fits.get(each, each not in used)]
+    bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
+    limited = (one for one, said in bounds.items() if (said.low, said.high) != (None, None))
+    words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
+    in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
+    given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
+    columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
+    rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
+    belonging = tuple(axis.members.by for axis in body.groups)
+    head = (body.axis.row, *belonging, *(f"{one.name} [{one.unit}]" for one in columns_of))
+    return Workbook(
+        name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
+        title=title,
+        source=source,
+        ledger=lambda: Ledger(entries, vocabulary=words),
+        measured=columns_of,
+        parameters=given_to,
+        sheet=lambda names: Sheet(columns),
+        headline=tuple(headline) or tuple(last),
+        row=body.axis.row,
+        curves=tuple(body.curves),
+        claims=tuple(body.claims),
+        constants=frozenset(body.constants),
+        aside=frozenset(body.aside),
+        tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
+        figures=tuple(body.figures),
+        drawn=(lambda sheet: curves) if curves.columns else None,
+        groups=belonging,
+        example=(head, *((str(place), *body.words(place), *row) for place, row in enumerate(rows, start=1)))
+        if columns_of
+        else (),
+        example_parameters={
+            one.name: body.examples[one.name] for one in given_to if one.name in body.examples
+        },
+    )
