@@ -19,6 +19,7 @@ __all__ = [
     "median",
     "pairs",
     "plot",
+    "points",
     "root",
     "table",
     "total",

@@ -20,6 +20,7 @@ from .axis import Axis, CountedAxis, GroupAxis, RepeatAxis
 from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series, drawn
 from .column import Column, Formula, Given, Iterated, SheetError
+from .method_lines import spaced
 from .named import member, name_of
 from .quantity import Bounds
 from .workbook import Curve, FigureSpec, sentence_case
@@ -225,7 +226,7 @@ class DeclaredFit:
             self.given[count.name], number, counts = number, count.symbol, (count,)
         low, high = (taken(over.cell, (self._axis.index, 1, self._axis.size)) for taken in (Least, Greatest))
         first, last = (end + way * BEYOND * Min(high - low, Abs(end)) for way, end in ((-1, low), (1, high)))
-        x = (first * (number - step) + last * (step - 1)) / (number - 1)
+        x = spaced(first, last, step, number)
         y = self._rows[0]
         across = drawn(f"{axis.name}_x", axis, x, over.unit, over.meaning, display=f"like {over.name}")
         value = self._model.xreplace({over.cell: across[row], **self._put()})

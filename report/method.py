@@ -18,6 +18,7 @@ import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
+from dataclasses import replace
 from typing import Any
 
 from sympy import Expr, false, sympify, true
@@ -25,10 +26,10 @@ from sympy import Expr, false, sympify, true
 from ..derivations.reductions import Median
 from . import method_algebra
 from .charts import BLUE, VERMILION, Chart, Series
-from .column import SheetError
+from .column import Column, SheetError
 from .messages.errors import listing
 from .method_body import MethodBody
-from .method_lines import ComputedLine, Declaration, FitLine, InputLine, UnknownLine, exact
+from .method_lines import ComputedLine, Declaration, FitLine, InputLine, PointsLine, UnknownLine, exact
 from .method_workbook import workbook_of
 from .named import name_of
 from .quantity import Bounds, behind
@@ -49,6 +50,7 @@ __all__ = [
     "median",
     "pairs",
     "plot",
+    "points",
     "root",
     "table",
     "total",
@@ -418,6 +420,34 @@ def pairs(
     return _body().paired(index, size, both)
 
 
+def points(
+    low: Any,
+    high: Any,
+    meaning: str,
+    unit: str = "1",
+    *,
+    number: int = 65,
+    label: str = "",
+    latex: str = "",
+) -> Any:
+    """Take points between two ends, themselves among them: what names them has a value for each.
+
+    ``h = points(0, 80, "depth", "um")`` and ``F = let(C * h**2, "force", "N")`` make a curve, which
+    ``plot(h, F)`` draws. Where the ends have a value for each row, or for each group, so have the curves.
+
+    Parameters
+    ----------
+    low, high : Expr
+        The first and the last; a number is in the unit, a formula that names others in SI.
+    meaning, unit, label, latex : str
+        As for :func:`let`; no table shows them, unless :func:`table` does.
+    number : int
+        How many, on each curve.
+    """
+    column = {"latex": latex, "positive": False}
+    return _said(PointsLine(meaning, unit, column, exact(low), exact(high), number, label))
+
+
 def claim(
     left: Any,
     right: Any,
@@ -454,25 +484,45 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     x, y : Expr
         Columns over the rows.
     *curves : Expr
-        Computed columns, each drawn as a line in the order of x, or single numbers, each across all of it.
+        Computed columns, each drawn as a line in the order of x, or single numbers, each across all of it;
+        or pairs ``(x, y)`` that have points, or a line, of their own.
     caption : str
         Below the figure; what its axes are, without.
     log : str
         The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
     """
     body = _body()
-    across, up, *beside = (body.column(name_of(cell)) for cell in (x, y, *curves))
+
+    def named(*cells: Any) -> list[Column]:
+        return [body.column(name_of(cell)) for cell in cells]
+
+    across, up = named(x, y)
     for each in (across, up):
         if each.axis is None:
             raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
-    series = [Series(across.name, up.name, up.meaning, "points", bars=True)]
-    for column, colour in zip(beside, itertools.cycle((VERMILION, BLUE)), strict=False):
-        style = "level" if column.axis is None else "line"
-        series.append(Series(across.name, column.name, column.meaning, style, colour))
+    series = [_series(across, up)]
+    for curve, colour in zip(curves, itertools.cycle((VERMILION, BLUE)), strict=False):
+        if isinstance(curve, tuple):
+            series.append(replace(_series(*named(*curve)), colour=colour))
+        else:
+            (column,) = named(curve)
+            style = "level" if column.axis is None else "line"
+            series.append(Series(across.name, column.name, column.meaning, style, colour))
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     caption = caption or f"{sentence_case(said)}."
     body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
+
+
+def _series(x: Column, y: Column) -> Series:
+    """Points of two columns, or a line where they are generated."""
+    if x.axis is None or x.axis != y.axis:
+        raise SheetError(f"{x.name} and {y.name} are no columns of the same rows", y.name)
+    if not x.axis.ordinals:
+        return Series(x.name, y.name, y.meaning, "points", bars=True)
+    if not x.axis.repeats:
+        return Series(x.name, y.name, y.meaning)
+    return Series(x.name, y.name, f"{y.meaning}, %s", each=True)
 
 
 def table(title: str, *columns: Any, note: str = "") -> None:

@@ -8,12 +8,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Expr, Indexed, Max, Min, Sum, Symbol, sympify
+from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, sympify
 
 from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
 from ..derivations.unit_text import of_differences
-from .axis import Axis, GroupAxis, MemberAxis, PairAxis
+from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
 from .cells.units import named_unit_of
 from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
 from .differences import is_difference
@@ -24,17 +24,19 @@ from .method_lines import (
     Declaration,
     FitLine,
     InputLine,
+    PointsLine,
     UnknownLine,
     exact,
     in_si,
     refuse_zero,
     size_of,
+    spaced,
     stated_unit,
     unit_in_si,
     with_unit,
 )
 from .named import member, name_of, references, summed_over
-from .quantity import Bounds
+from .quantity import Bounds, behind
 from .sheet import Sheet
 from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 
@@ -228,6 +230,8 @@ class MethodBody(dict[str, Any]):
         What names a row and what there is of groups has a value for each row: of its group.
         """
         found = self._rows_of(*formulas)
+        beneath = {parent for axis in found if axis.repeats for parent in axis.parents}
+        found = [axis for axis in found if axis not in beneath]  # a point may name what its curve is of
         if self.axis in found:
             found = [axis for axis in found if axis not in self.groups]
         if len(found) > 1 and not self.groups:
@@ -260,7 +264,8 @@ class MethodBody(dict[str, Any]):
         cells = self.named_in(*every)
         named = {cell.index for cell in cells if cell.over is None}
         named |= {str(told.args[1]) for formula in every for told in formula.atoms(Member)}
-        return [axis for axis in self.axes if not named.isdisjoint(axis.named)]
+        beneath = {axis: {name for of in axis.parents for name in of.named} for axis in self.axes}
+        return [axis for axis in self.axes if not named.isdisjoint(axis.named.keys() - beneath[axis])]
 
     def paired(self, index: str, size: str, members: Sequence[str]) -> tuple[Callable[[Any], Expr], ...]:
         """Every pair of rows, and what takes a formula for the rows at its first and at its second member."""
@@ -339,10 +344,7 @@ class MethodBody(dict[str, Any]):
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
-            column = (
-                self._computed(name, value) if isinstance(value, ComputedLine) else self._input(name, value)
-            )
-            self.columns[name] = column
+            self.columns[name] = column = self._declared(name, value)
             value = column.cell
         super().__setitem__(name, value)
 
@@ -365,8 +367,59 @@ class MethodBody(dict[str, Any]):
                     f"{own} is {said}: call that otherwise, {there}, or take another name than {own}", own
                 )
 
-    def _input(self, name: str, said: Declaration) -> Column:
+    def _declared(self, name: str, said: Declaration) -> Column:
+        """The column of a line."""
+        if isinstance(said, ComputedLine):
+            return self._computed(name, said)
+        if isinstance(said, PointsLine):
+            return self._points(name, said)
         assert isinstance(said, InputLine)
+        return self._input(name, said)
+
+    def _points(self, name: str, said: PointsLine) -> Column:
+        """The points of a curve, or of one for each row or group that its ends hang on: rows of their own."""
+        size = size_of(name, said.unit)
+        low, high = self._end(f"{name}_first", said, said.low), self._end(f"{name}_last", said, said.high)
+        over = self.axis_of(low, high)
+        index, many, step = _numbers(f"{name}_row", f"{name}_points", f"{name}_point")
+        if over is None:
+            last: Expr = Integer(said.number)
+            axis: Axis = CountedAxis(f"{name}_points", index, many, step, said.number)
+        elif over.ordinals:
+            raise SheetError(f"{name}: its ends are points themselves, of {over.name}", name)
+        else:
+            each, more = f"{name}_each", {"exact": True, "positive": True}
+            count = InputLine(f"points of {name}", "1", more, Bounds(2, integer=True), str(said.number))
+            self.columns[each] = column = self._input(each, count)
+            last = column.symbol
+            axis = RepeatAxis(f"{name}_points", index, many, of=over, step=step, count=each)
+        self.axes.append(axis)
+        self._refuse_name_of_rows()
+        column = Column(name, axis, Given(), meaning=said.meaning, **unit_in_si(size), **said.column)
+        value = spaced(low, high, step, last)
+        equation = Equation(
+            said.label or self.free_number(), (column.cell, value), "points", Kind.DEFINITION, said.meaning
+        )
+        self.entries.append(equation)
+        return self._as_difference(replace(column, rule=Formula(equation)), said_so=True)
+
+    def _end(self, name: str, said: PointsLine, end: Expr) -> Expr:
+        """An end of points; a number in their unit is a parameter with a default."""
+        if not end.is_number:
+            return exact(self._of_one_row(end))
+        if not end and not size_of(name, said.unit).zero:
+            return end
+        which = name.rpartition("_")[2]
+        line = InputLine(
+            f"{said.meaning}, {which}",
+            said.unit,
+            {"exact": True, "positive": False},
+            default=f"{float(end):.15g}{behind(said.unit)}",
+        )
+        self.columns[name] = column = self._input(name, line)
+        return column.cell
+
+    def _input(self, name: str, said: InputLine) -> Column:
         size = size_of(name, said.unit)
         refuse_zero(name, said, size)
         bounds = said.bounds.within(size.scale, size.zero)

@@ -22,11 +22,13 @@ __all__ = [
     "Declaration",
     "FitLine",
     "InputLine",
+    "PointsLine",
     "UnknownLine",
     "exact",
     "in_si",
     "refuse_zero",
     "size_of",
+    "spaced",
     "stated_unit",
     "unit_in_si",
     "with_unit",
@@ -38,6 +40,8 @@ FUNCTIONS = (
     *("Abs", "Max", "Min"),
 )
 """Besides powers; as sympy calls them."""
+MOST_POINTS = 1000
+"""Of one curve; beyond, a picture shows no more of it."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,21 @@ class ComputedLine(Declaration):
     label: str = ""
     because: str = ""
     ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
+
+
+@dataclass(frozen=True)
+class PointsLine(Declaration):
+    """Points between two ends, themselves among them."""
+
+    low: Expr
+    high: Expr
+    number: int
+    label: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.number, int) or not 2 <= self.number <= MOST_POINTS:
+            raise SheetError(f"number is a whole number from 2 to {MOST_POINTS}, not {self.number!r}")
 
 
 @dataclass(frozen=True)
@@ -148,6 +167,11 @@ def refuse_zero(name: str, said: Declaration, size: ParsedUnit) -> None:
     """Refuse what is positive in a unit whose zero is another than that of SI."""
     if size.zero and said.column["positive"]:
         raise SheetError(f"{name}: above which zero? say low=..., in {said.unit}", name)
+
+
+def spaced(first: Expr, last: Expr, place: Expr, number: Expr) -> Expr:
+    """Of so many points from the first to the last, all equally far apart, the one at a place, from 1."""
+    return (first * (number - place) + last * (place - 1)) / (number - 1)
 
 
 def exact(formula: Any) -> Expr:

@@ -89,7 +89,7 @@ def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
         yield TableSpec("given", "Parameters", given)
     for axis in sheet.axes:
         columns = tuple(column.name for column in shown if column.axis == axis)
-        if columns and not axis.repeats:
+        if columns and not axis.ordinals:
             yield TableSpec(axis.name, f"Values of the {axis.name}", columns)
     scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
     if scalars:
