@@ -16,7 +16,7 @@ from .parts import Placed
 __all__ = ["placed_in"]
 
 _BETWEEN = re.compile(
-    r"(?<=[\d})])(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\ln|\\exp|\\sqrt|\\pi|\d)"
+    r"(?:(?<=[\d})])|(?<=\\pi))(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\ln|\\exp|\\sqrt|\\pi|\d)"
 )
 
 

@@ -24,6 +24,7 @@ from ..workbook import FigureSpec
 from . import cards
 from .material import Material
 from .parts import Item, SourceGroup
+from .put_in import put_in
 from .refereed import GOOD
 from .tables import Tables
 from .tree import (
@@ -439,6 +440,7 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "own_numbers": lambda s: any(equation.own for equation in s.material.equations),
     "ledger": lambda s: (s.tables.ledger(),) if s.material.equations else (),
     "claims": lambda s: tuple(map(s.claim, s.material.equations)),
+    "put_in": lambda s: put_in(s.material),
     "errata": lambda s: tuple(table for table in (s.tables.errata(),) if table.size),
     "errata_of_equations": lambda s: bool(s.report.errata),
     "sample": lambda s: tuple(engine.sample for engine in s.report.engines[:1] if engine.sample),

@@ -14,6 +14,7 @@ from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..result import numbers
 from ..workbook import FigureSpec
+from .names import Terms
 from .parts import Item, cell_id
 
 __all__ = [
@@ -39,6 +40,7 @@ __all__ = [
     "Note",
     "Number",
     "Paragraph",
+    "PutIn",
     "Refer",
     "Row",
     "Rows",
@@ -376,6 +378,14 @@ class Display(Block):
 
     equation: Equation
     numbered: bool = False
+
+
+@dataclass(frozen=True)
+class PutIn(Block):
+    """An equation with numbers in it, and the number of that which they were put into."""
+
+    label: str
+    sides: tuple[Terms, ...]
 
 
 @dataclass(frozen=True)

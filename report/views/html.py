@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from ...derivations.equation import Equation
 from ...derivations.unit_text import is_pure
 from ..cells.values import Cell
 from ..document.material import Material
+from ..document.names import Terms
 from ..document.parts import Item, why_address
 from ..document.tables import Tables
 from ..document.tree import Entry, Math, Number, Refer, Silent, TableColumn, Unit
@@ -69,7 +70,11 @@ class HtmlWriter(Writer):
 
     def displayed(self, equation: Equation) -> Markup:
         """An equation on lines of its own."""
-        return mathml_block(block(self.material.written(equation).sides))
+        return self.lines(self.material.written(equation).sides)
+
+    def lines(self, sides: Sequence[Terms]) -> Markup:
+        """The sides of an equation on lines of their own."""
+        return mathml_block(block(sides))
 
     def data(self, item: Item, identified: bool = True) -> Markup:
         """The attributes of a cell; its identifier goes to the first element that shows it in a table."""

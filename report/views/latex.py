@@ -6,13 +6,14 @@ Nothing foreign reaches TeX unescaped: the title may well be ``\input{/etc/passw
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
 from ...derivations.unit_text import is_pure
 from ..document.material import Material
+from ..document.names import Terms
 from ..document.parts import Item
 from ..document.tree import Display, Entry, Math, Number, Refer, Silent, Table, TableColumn, Unit
 from ..machine.staging import put
@@ -105,7 +106,11 @@ class LatexWriter(Writer):
 
     def displayed(self, equation: Equation, number: str) -> Markup:
         """A displayed equation; one that may be too wide is shrunk to the line if it is."""
-        lines = block(self.material.written(equation).sides)
+        return self.lines(self.material.written(equation).sides, number)
+
+    def lines(self, sides: Sequence[Terms], number: str = r"\notag") -> Markup:
+        """The sides of an equation on lines of their own."""
+        lines = block(sides)
         body = lines.aligned
         if lines.width > _MARKED * TEXT_WIDTH:
             body = rf"\adjustbox{{max width=0.9\linewidth}}{{$\displaystyle {body}$}}"

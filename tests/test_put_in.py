@@ -1,0 +1,64 @@
+"""Numbers put into equations, as a report shows its calculation."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from loopsheet.report.document.material import Material
+from loopsheet.report.document.names import join
+from loopsheet.report.document.put_in import put_in
+from loopsheet.report.study import Study
+from loopsheet.report.views.html import render
+from loopsheet.report.views.latex import render as render_latex
+
+DATA = Path(__file__).resolve().parents[1] / "data"
+
+
+def _told(folder: Path) -> dict[str, str]:
+    found = put_in(Material(Study(folder).computed))
+    return {each.label: " = ".join(join(list(side)) for side in each.sides) for each in found}
+
+
+def test_hertz_is_calculated_as_on_paper() -> None:
+    assert _told(DATA / "hertz") == {
+        "(1)": r"R_{c} = \frac{1}{2} \cdot 0.05 = 0.025\,\text{m}",
+        "(2)": r"E_{c} = \frac{\left(2 \times 10^{10}\right)}{2 - 2 \cdot 0.3^{2}} = "
+        r"1.09890 \times 10^{10}\,\text{Pa}",
+        "(3)": r"K = \frac{4}{3} \cdot \left(1.09890 \times 10^{10}\right) \cdot \sqrt{0.025} = "
+        r"2.31669 \times 10^{9}\,\text{N}/\text{m}^{3/2}",
+        "(4)": r"F = \left(2.31669 \times 10^{9}\right) \cdot 0.004^{1.5} = 586081\,\text{N}",
+        "(5)": r"a = \sqrt{0.025 \cdot 0.004} = 0.01\,\text{m}",
+        "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586081}{\pi \cdot 0.01^{2}} = -2.79833 \times 10^{9}\,\text{Pa}",
+    }
+
+
+def test_an_equation_that_is_solved_has_its_root_in_it() -> None:
+    told = _told(DATA / "kepler")["(1)"]
+    root, eccentricity, same, mean = map(float, re.findall(r"\d+\.\d+", told))
+    assert told == rf"{root} - {eccentricity} \sin{{\left({same} \right)}} = {mean}"
+    assert root - eccentricity * math.sin(root) == pytest.approx(mean, abs=1e-7)
+
+
+def test_what_is_given_keeps_its_digits_and_what_is_negative_has_brackets() -> None:
+    (told,) = _told(DATA / "gum_h1").values()
+    assert told == (
+        r"l = \left(2.15 \times 10^{-7}\right) + 0.050000623 - 0.050000623 \cdot "
+        r"(\left(1.15 \times 10^{-5}\right) \cdot 0 + 0 \cdot (0 + \left(-0.1\right))) = 0.050000838\,\text{m}"
+    )
+
+
+def test_what_only_renames_a_number_and_the_parts_of_a_fit_are_not_shown() -> None:
+    """The slope of Meyer's line is a part of its fit: to put it in says that a number is itself."""
+    told = _told(DATA / "meyer")
+    assert not [each for each in told.values() if len({*each.split(" = ")[1:]}) == 1]
+    assert not [label for label in told if label.startswith("(L")]
+
+
+def test_page_and_print_have_the_chapter_and_the_paper_has_none(tmp_path: Path) -> None:
+    report = Study(DATA / "hertz").report
+    page, print_ = render(report, {}), render_latex(report, ())
+    assert len(re.findall('<section id="?put-in"? data-issued', page)) == 1
+    assert r"\section{Numbers put in}" in print_
+    assert _told(DATA / "soft_steel") == {}
