@@ -29,7 +29,7 @@ help:
 	@echo 'make report      build the report of the shipped paper into $(OUT)/'
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
-	@echo 'make codes       run cards in five simulation codes, which are a gigabyte'
+	@echo 'make codes       run cards in five simulation codes, a gigabyte, and in Yade and LIGGGHTS if there'
 	@echo "make seen        the page's scripts or the paper's report were changed and looked at: they are right"
 	@echo 'make mutants     one spot of the sources changed at a time: what no test notices (SEED=7, EACH=40, PART=plan)'
 	@echo 'make bench       the benchmarks'

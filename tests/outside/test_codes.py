@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,8 +17,10 @@ SCRIPT = Path(__file__).parents[2] / "benchmarks" / "card_in_code.py"
 ROW = re.compile(r" *([\d.]+) m/s +(\d+) steps +e (-?[\d.]+), card ([\d.]+) +([\de.-]+) m")
 pytestmark = pytest.mark.codes
 
-CODES = ("drake", "exudyn", "lammps", "mujoco", "simbody")
+CODES = ("drake", "exudyn", "lammps", "liggghts", "mujoco", "simbody", "yade")
 """Not exudyn-damped: Exudyn's solver gives up there where a step just meets the surface."""
+PROGRAMS = ("liggghts", "yade")
+"""What is no package of Python but a program, which may be missing."""
 DIGITS = 2e-8
 """To which a card is solved, and what it is typed with."""
 
@@ -25,11 +28,13 @@ Run = Callable[[dict[str, object]], list[tuple[float, ...]]]
 
 
 @pytest.fixture(scope="module")
-def run(environment: Callable[..., Path]) -> Run:
+def run(environment: Callable[..., Path], require: Callable[..., str]) -> Run:
     """What a code returns of a card: speed, steps, restitution, that of the card, and depth."""
-    python = environment("codes")
 
     def run(card: dict[str, object]) -> list[tuple[float, ...]]:
+        if card["name"] in PROGRAMS:
+            require(str(card["name"]))
+        python = sys.executable if card["name"] in PROGRAMS else environment("codes")
         done = subprocess.run(
             [python, SCRIPT], input=json.dumps(card), capture_output=True, text=True, check=True, timeout=300
         )

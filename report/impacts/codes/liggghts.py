@@ -6,7 +6,7 @@ from ..law import ForceLaw
 CODE = SimulationCode(
     name="liggghts",
     title="LIGGGHTS-PUBLIC, model hertz with limitForce on",
-    version="commits 25fc396 and 84ba3d7",
+    version="commits 25fc396 and 84ba3d7; run in 3.8.0",
     sources=(
         "github.com/CFDEMproject/LIGGGHTS-PUBLIC src/normal_model_hertz.h, surfacesIntersect",
         "github.com/CFDEMproject/LIGGGHTS-PUBLIC src/global_properties.cpp, createBetaEff",
@@ -22,6 +22,7 @@ CODE = SimulationCode(
     by_hertz=E,
     snippet="pair_style gran model hertz limitForce on",
     notes=(
+        "hard_particles yes before the properties: without it a modulus above 1e9 Pa is refused",
         "with limitForce off, the default, the force pulls at the end and the typed restitution is returned",
     ),
 )
