@@ -1,8 +1,9 @@
 """The damping family: proved, wrong variants refuted, and its closed forms beside simulated impacts."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import mpmath
 import pytest
@@ -26,6 +27,7 @@ from loopsheet.derivations.contact.damping import (
 from loopsheet.derivations.equation import Derivation, Equation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
+from loopsheet.report.cli import main
 from loopsheet.report.impacts.damping import _value, _zero, number_by, returned
 from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
@@ -39,6 +41,24 @@ def test_all_of_it_is_proved() -> None:
     assert [proof.equation.label for proof in found if proof.status not in passed] == []
     claims = [entry.claim for entry in LEDGER.entries if isinstance(entry, Derivation)]
     assert [proof.equation for proof in found if proof.status is ProofStatus.PROVED] == claims
+
+
+@pytest.mark.parametrize(("word", "claim"), [("damping", "(L106) proved"), ("damped-loop", "(L214) proved")])
+def test_the_command_proves_what_no_workbook_computes(
+    word: str, claim: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, chdir: Callable[[Path], None]
+) -> None:
+    assert main(["prove", word]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith(claim) for line in lines)
+    assert main(["prove", claim.partition(" ")[0], word]) == 0
+    assert "agree within" in capsys.readouterr().out
+    assert main(["prove", "(11)", word]) == 2
+    assert "unknown equation '(11)'" in capsys.readouterr().err
+    (tmp_path / word).mkdir()
+    (tmp_path / word / "report.toml").write_text("", encoding="utf-8")
+    chdir(tmp_path)
+    assert main(["prove", word]) == 2  # a report folder of that name is meant
+    assert f"{word}/report.toml" in capsys.readouterr().err
 
 
 def wrong() -> Iterator[tuple[Equation, Expr]]:

@@ -15,7 +15,7 @@ Domain: c_c, c_r > 0 and c_r e < 1; an imprint where (beta + 1) s_r e^2 < (alpha
 Sources:
 the figure of the hysteresis loop of the soft-impact paper, for the three works;
 Y Gonthier, J McPhee, C Lange, J-C Piedboeuf, Multibody Syst Dyn 11 (2004) 209, for the separated variables;
-R W G Anderson, A D Long, T Serre, Nonlinear Dyn 58 (2009) 443, 10.1007/s11071-009-9471-6 (abstract).
+R W G Anderson, A D Long, T Serre, Nonlinear Dyn 58 (2009) 199, 10.1007/s11071-009-9471-6 (abstract).
 """
 
 from __future__ import annotations

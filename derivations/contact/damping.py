@@ -274,18 +274,23 @@ with evaluate(False):
         "(L113)",
         c_HC,
         3 * (1 - e) / 2,
-        "(L110) for e near 1, where 1 - e^2 is 2 (1 - e)",
+        "(L110) for e near 1, where 1 - e^2 is 2 (1 - e); as secondary sources give it",
         "Hunt and Crossley 1975",
         Kind.DEFINITION,
     )
     lee_wang = _member(
-        "(L114)", c_LW, 3 * (1 - e) / 4, "half of (L113)", "Lee and Wang 1983", Kind.DEFINITION
+        "(L114)",
+        c_LW,
+        3 * (1 - e) / 4,
+        "half of (L113), as secondary sources give it",
+        "Lee and Wang 1983",
+        Kind.DEFINITION,
     )
     gonthier = _member(
         "(L115)",
         c_G,
         (1 - e**2) / e,
-        "explicit approximation of (L106)",
+        "explicit approximation of (L106), as secondary sources give it",
         "Gonthier and others 2004",
         Kind.DEFINITION,
     )
@@ -293,7 +298,7 @@ with evaluate(False):
         "(L116)",
         c_CM,
         3 * (1 - e) * (11 - e) / (2 * (1 + 9 * e)),
-        "rational approximation of (L106)",
+        "rational approximation of (L106), as secondary sources give it",
         "Carvalho and Martins 2019",
         Kind.DEFINITION,
     )

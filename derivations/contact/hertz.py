@@ -200,7 +200,8 @@ HERTZ = ContactModel(
     title="Hertz, elastic",
     mark="H",
     assumes="both bodies are elastic: nothing is lost, and no imprint is left",
-    source="H Hertz, J. reine angew. Math. 92 (1881) 156-171; Timoshenko and Goodier 1970 for the impact",
+    source="H Hertz, J. reine angew. Math. 92 (1881) 156-171, 10.1515/crll.1882.92.156; Timoshenko and "
+    "Goodier 1970 for the impact",
     quantities=OWN,
     entries=(
         Derivation.of(approach, (energy,), (m_red,), "Integrate, and solve for the approach."),

@@ -206,7 +206,7 @@ JOHNSON = ContactModel(
     title="Johnson, fully plastic",
     mark="J",
     assumes="the target flows at one mean pressure, at every depth and speed, and unloads elastically",
-    source="K L Johnson, Contact Mechanics, Cambridge 1985, 11.4",
+    source="K L Johnson, Contact Mechanics, Cambridge 1985, 11.4, 10.1017/CBO9781139171731",
     quantities=(*YIELD_WORDS, *OWN),
     entries=(
         *YIELD,

@@ -43,7 +43,7 @@ LANKARANI_1994 = ContactModel(
     title="Lankarani and Nikravesh 1994",
     mark="LN",
     assumes="loading is Hertz's, whatever yields; the restitution is told, and the imprint follows",
-    source="H M Lankarani, P E Nikravesh, Nonlinear Dynamics 5 (1994) 193-207",
+    source="H M Lankarani, P E Nikravesh, Nonlinear Dynamics 5 (1994) 193-207, 10.1007/BF00045676",
     quantities=OWN,
     entries=(
         Derivation(

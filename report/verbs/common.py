@@ -46,9 +46,10 @@ __all__ = [
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 
 
-def folder_argument(parser: argparse.ArgumentParser) -> None:
-    """Take a FOLDER: a word for :func:`~loopsheet.report.inputs.folders.report_folder`."""
+def folder_argument(parser: argparse.ArgumentParser, more: str = "") -> None:
+    """Take a FOLDER: a word for :func:`~loopsheet.report.inputs.folders.report_folder`, or `more`."""
     said = f"a folder with a report.toml (default: the working directory), or '{WORD}' for the shipped paper"
+    said += more
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=named, help=said)
 
 

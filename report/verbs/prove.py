@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING
 from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ...derivations.equation import Erratum, Ledger
     from ...derivations.proved import Proof
     from ...derivations.vocabulary import Vocabulary
+
+    Step = Callable[[str], None]
+    Proved = tuple[tuple[Proof, ...], tuple[Erratum, ...]]
+    Algebra = tuple[Ledger, Callable[[list[str] | None, Step], Proved]]
 
 HELP = "prove the algebra of a workbook, or show the proof of one equation"
 
@@ -19,24 +26,23 @@ HELP = "prove the algebra of a workbook, or show the proof of one equation"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("equation", metavar="EQUATION", nargs="?", help="its number, for example (11) or 12a")
-    folder_argument(parser)
+    folder_argument(parser, ", 'damping' or 'damped-loop' for models of contacts that no workbook computes")
     keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Prove, and print one line an equation, or all steps of one."""
-    from ..inputs.folders import WORD, is_report, report_folder
+    from ...derivations.contact.families import FAMILIES, family
+    from ..inputs.folders import WORD, is_report
     from ..messages.errors import UsageError, diagnose, suggest
-    from ..study import Study
 
     word = options.equation
-    if word and options.folder is None and (word == WORD or is_report(Path(word))):
+    if word and options.folder is None and (word in (WORD, *FAMILIES) or is_report(Path(word))):
         options.equation, options.folder = None, word  # no equation has such a name
-    study = Study(report_folder(options.folder))
-    assert study.prepared  # whoever asks for the algebra of a folder hears of what is wrong with it
-    ledger = study.declared
+    beside = options.folder in FAMILIES and not is_report(Path(options.folder))
+    ledger, prove = _beside(family(options.folder)) if beside else _folder(options.folder)
     labels = [equation.label for equation in ledger.equations()]
-    wanted: list[str] = labels
+    wanted: list[str] | None = None
     if options.equation:
         number = options.equation.strip("()")
         wanted = [e.label for e in ledger.equations() if f"({number})" in (e.label, e.number)]
@@ -46,18 +52,42 @@ def run(options: argparse.Namespace) -> int:
                 diagnose("LS604", kind="equation", text=options.equation, known=known, suggestion=hint)
             )
     with Progress(sys.stderr) as progress:
-        study.step = progress
-        shown = study.proofs(map(ledger.__getitem__, wanted)) if options.equation else study.algebra[0]
+        shown, errata = prove(wanted, progress)
     for proof in shown:
         _print(proof, ledger.vocabulary, steps=bool(options.equation))
-    if not options.equation:
-        for erratum in study.algebra[1]:
-            print(f"erratum: {erratum.sentence}")
-            if erratum.evidence:
-                print(f"         {erratum.evidence}")
+    for erratum in errata:
+        print(f"erratum: {erratum.sentence}")
+        if erratum.evidence:
+            print(f"         {erratum.evidence}")
     failed = [proof for proof in shown if not proof.status.passes]
     print(f"{len(shown) - len(failed)} of {len(shown)} stand")
     return FINDINGS if failed else OK
+
+
+def _folder(folder: str | None) -> Algebra:
+    """The ledger of a report folder, and what proves all of it or some, which is kept."""
+    from ..inputs.folders import report_folder
+    from ..study import Study
+
+    study = Study(report_folder(folder))
+    assert study.prepared  # whoever asks for the algebra of a folder hears of what is wrong with it
+    ledger = study.declared
+
+    def prove(wanted: list[str] | None, step: Step) -> Proved:
+        study.step = step
+        return study.algebra if wanted is None else (study.proofs(map(ledger.__getitem__, wanted)), ())
+
+    return ledger, prove
+
+
+def _beside(ledger: Ledger) -> Algebra:
+    """A ledger that is not that of a folder, and what proves it."""
+    from ...derivations.proof import prove
+
+    return ledger, lambda wanted, step: (
+        prove(ledger, lambda equation: step(f"proving {equation.label}"), only=wanted),
+        (),
+    )
 
 
 def _print(proof: Proof, vocabulary: Vocabulary, steps: bool) -> None:
