@@ -36,6 +36,9 @@ OWN = (
     Quantity("recovery_asked", "elastic recovery, as the force asks for", "m", r"\delta_{E%s}", (1e-6, 1e-4)),
     Quantity("pressure_power", "greatest force over the crater", "Pa", r"\bar{p}_{(3)%s}", (1e8, 1e10)),
     Quantity("meyer_n", "exponent of Meyer's law that goes with it", "1", "n%s", (1.5, 3.0)),
+    Quantity("meyer_k", "coefficient of Meyer's law", "N/m^meyer_n", r"k_{\mathrm{M}%s}", (1e8, 1e10)),
+    Quantity("meyer_d", "diameter of the contact under load", "m", r"d_{\mathrm{M}%s}", (1e-4, 1e-3)),
+    Quantity("meyer_way", "square of that diameter over approach", "m", r"l_{\mathrm{M}%s}", (1e-3, 1e-1)),
     Quantity("over_lankarani", "imprint, over Lankarani's", "1", r"x_p/x_{p,\mathrm{LN}}%s", (0.5, 3.0)),
     Quantity("deceleration_power", "greatest deceleration by law (3)", "m/s^2", r"a_{m,(3)%s}", (1e4, 1e6)),
 )  # fmt: skip
@@ -47,6 +50,7 @@ ln_v, ln_e, mean_v, mean_e, b, alpha_e = _WORDS.plain("ln_v ln_e mean_ln_v mean_
 recovery, a, asked, pressure, n, over, deceleration = _WORDS.plain(
     "recovery_power a_crater recovery_asked pressure_power meyer_n over_lankarani deceleration_power"
 )
+meyer_k, meyer_d, meyer_way = _WORDS.plain("meyer_k meyer_d meyer_way")
 LV, LE = _WORDS["ln_v"], _WORDS["ln_e"]
 
 
@@ -83,7 +87,27 @@ with evaluate(False):
     recovered = _define("(L180)", recovery, x_m - predicted)
     crater = _define("(L181)", a, sqrt(2 * R * x_p), "a flat cap of the ball's radius")
     mean_pressure = _define("(L182)", pressure, peak / (pi * a**2))
-    meyer = _define("(L183)", n, 2 * paper.alpha, "the area of the contact is as the approach")
+    meyer = _define("(L183)", n, 2 * paper.alpha, "(L188) is a power of the approach, with half of n")
+    indentation = Equation(
+        "(L186)",
+        (paper.F, meyer_k * meyer_d**n),
+        "of the diameter under load; Meyer measured that of the recovered indentation",
+        Kind.ASSUMPTION,
+        "Meyer's law",
+    )
+    by_area = Equation(
+        "(L187)",
+        (meyer_d**2, meyer_way * paper.x),
+        "the area of the contact is as the approach: a ball that sinks in no deeper than a small cap",
+        Kind.ASSUMPTION,
+        "diameter of the contact",
+    )
+    by_approach = Equation(
+        "(L188)",
+        (paper.F, meyer_k * (meyer_way * paper.x) ** (n / 2)),
+        "Meyer's law with that diameter",
+        title="Meyer's law by the approach",
+    )
     beside_lankarani = _define("(L184)", over, x_p / _WORDS["x_p_lankarani"].symbol)
     decelerates = _define("(L185)", deceleration, peak / m_1)
 
@@ -99,6 +123,9 @@ ENTRIES: tuple[Equation | Derivation, ...] = (
     recovered,
     crater,
     mean_pressure,
+    indentation,
+    by_area,
+    Derivation.of(by_approach, (indentation, by_area), (paper.F, meyer_d), "Put the diameter in."),
     meyer,
     beside_lankarani,
     decelerates,

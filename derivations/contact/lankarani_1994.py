@@ -9,7 +9,7 @@ from __future__ import annotations
 from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Step
+from ..equation import Derivation, Equation, Step, define
 from ..soft_impact import XM, XP, E
 from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
@@ -24,10 +24,17 @@ OWN = (
     Quantity(
         "x_p_lankarani", "imprint by Lankarani and Nikravesh", "m", r"x_{p,\mathrm{LN}%s}", (1e-6, 1e-4)
     ),
+    Quantity(
+        "t_lankarani",
+        "duration of the contact by Lankarani and Nikravesh",
+        "s",
+        r"t_{\mathrm{LN}%s}",
+        (1e-6, 1e-3),
+    ),
 )  # fmt: skip
 _WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *OWN)
 (e,) = SHARED.plain("e")
-x_m, peak, x_p = _WORDS.plain("x_m_hertz F_m_hertz x_p_lankarani")
+x_m, peak, x_p, t = _WORDS.plain("x_m_hertz F_m_hertz x_p_lankarani t_lankarani")
 
 with evaluate(False):
     imprint = Equation(
@@ -36,6 +43,19 @@ with evaluate(False):
         "what is not given back is the area between both branches",
         title="imprint by Lankarani and Nikravesh",
         defines=x_p,
+    )
+    by_force = Equation(
+        "(L165)",
+        (x_p, 5 * hertz.m_red * hertz.v**2 * (1 - e**2) / (4 * peak)),
+        "the same, told by the greatest force",
+        title="imprint by the greatest force",
+    )
+    lasting = define(
+        "(L166)",
+        t,
+        hertz.duration(x_m, x_p, e),
+        "duration of the contact by Lankarani and Nikravesh",
+        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
     )
 
 LANKARANI_1994 = ContactModel(
@@ -67,9 +87,16 @@ LANKARANI_1994 = ContactModel(
                 ),
             ),
         ),
+        Derivation.of(
+            by_force,
+            (imprint, hertz.greatest, hertz.approach),
+            (x_p, peak, x_m),
+            "Put approach and force in.",
+        ),
+        lasting,
     ),
-    cells=(hertz.approach, hertz.greatest, imprint),
-    predicts={"x_p": x_p},
+    cells=(hertz.approach, hertz.greatest, imprint, lasting),
+    predicts={"t": t, "x_p": x_p},
     needs={x_p: LOSES},
     loading=hertz.HERTZ.loading,
     unloading=hertz.unloads(peak, x_m, x_p),

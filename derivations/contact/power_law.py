@@ -71,7 +71,13 @@ POWER_LAW = ContactModel(
     quantities=OWN,
     constants=2,
     left_out={x_p: WITHOUT.symbol},
-    needs={WITHOUT.symbol: (1 - H.symbol > FREE, "needs three tests: the others alone tell no curve")},
+    needs={
+        WITHOUT.symbol: (1 - H.symbol > FREE, "needs three tests: the others alone tell no curve"),
+        x_p: (
+            e**2 < (paper.alpha + 1) / (beta + 1),
+            "e^2 is not below (alpha + 1)/(beta + 1): the recovery is the whole approach",
+        ),
+    },
     entries=(
         Derivation(
             (
