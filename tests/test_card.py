@@ -17,6 +17,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.impacts.card import Unreachable, card
 from loopsheet.report.impacts.code import SimulationCode
 from loopsheet.report.impacts.codes import CODES
+from loopsheet.report.impacts.damping import number_for
 from loopsheet.report.impacts.drops import Drops
 from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
@@ -209,9 +210,7 @@ def test_the_card_of_the_paper_for_programs(capsys: pytest.CaptureFixture[str]) 
     assert told["returned"]["e"] == pytest.approx(0.453, abs=1e-9)
     assert [row["speed"] for row in told["rows"]] == list(STEEL.v)
     # c = d v is what the family wants for .453
-    from test_damping import wanted
-
-    assert told["typed"][1]["value"] * 4.993 == pytest.approx(wanted(0.453), rel=1e-8)
+    assert told["typed"][1]["value"] * 4.993 == pytest.approx(number_for(0.453), rel=1e-8)
 
 
 def test_a_sweep_tells_every_impact(capsys: pytest.CaptureFixture[str]) -> None:

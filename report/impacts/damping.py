@@ -16,9 +16,13 @@ from sympy import Expr, Symbol, lambdify
 
 from ...derivations.contact import damping as model
 
-__all__ = ["number_by", "returned"]
+__all__ = ["number_by", "number_for", "returned"]
 
 _DIGITS = 40
+_MARGIN = 1e-15
+"""How near to an end a number is sought, over it."""
+_STRONG = 37.0
+"""With a stronger damping the restitution is 1/c within that margin."""
 
 
 @lru_cache
@@ -50,9 +54,30 @@ def returned(c: float) -> float:
     >>> f"{returned(0.705):.4f}"  # Hunt and Crossley's c for e = .53
     '0.6770'
     """
+    if c > _STRONG:
+        return 1 / c
     (residual,) = model.returned.residuals
-    margin = 1e-15
-    return _zero(lambda e: _value(residual, c=c, e_o=e), 0.0, min(1.0, 1 / c) * (1 - margin))
+    return _zero(lambda e: _value(residual, c=c, e_o=e), 0.0, min(1.0, 1 / c) * (1 - _MARGIN))
+
+
+def number_for(e: float) -> float:
+    """The damping number with which the family returns a restitution, for any n: (L106), solved for it.
+
+    Parameters
+    ----------
+    e : float
+        The restitution, between 0 and 1.
+
+    Examples
+    --------
+    >>> f"{number_for(0.5):.4f}"
+    '1.4328'
+    """
+    if e < 1 / _STRONG:
+        return 1 / e
+    (residual,) = model.returned.residuals
+    # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
+    return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - _MARGIN) / e)
 
 
 def number_by(author: str, e: float, n: float) -> float:
