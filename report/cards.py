@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from .impacts.code import ContactFormula
     from .impacts.drops import Drop, Drops
+    from .impacts.law import ForceLaw
     from .result.result import Report
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "asked_for",
     "card",
     "contacts_of",
+    "course",
     "curve",
     "drop_at",
     "drops_of",
@@ -219,14 +221,30 @@ def swept(
     """
     import numpy as np
 
-    from .impacts.card import solved
     from .impacts.sweep import as_csv, sweep
 
-    law, constants = drops.law(), {}
-    if code is not None:
-        law, constants = code.law, solved(code, drops, drop, *asked.bodies(drops))[0]
+    law, constants = _solved(code, drops, drop, asked)
     speeds = np.linspace(drops.tests[0].speed, drops.tests[-1].speed, impacts).tolist()
     return as_csv(speeds, sweep(law, constants, drops.mass, speeds, step))
+
+
+def course(code: ContactFormula | None, drops: Drops, drop: Drop, asked: Asked, impacts: int) -> str:
+    """The course of impacts one after the other in the same place, as CSV; as for :func:`swept`."""
+    from .impacts.sweep import course_as_csv, repeated
+
+    law, constants = _solved(code, drops, drop, asked)
+    return course_as_csv(repeated(law, constants, drops.mass, drop.speed, impacts), drops.mass)
+
+
+def _solved(
+    code: ContactFormula | None, drops: Drops, drop: Drop, asked: Asked
+) -> tuple[ForceLaw, Mapping[Symbol, float]]:
+    """The law that impacts follow, and its constants."""
+    from .impacts.card import solved
+
+    if code is None:
+        return drops.law(), {}
+    return code.law, solved(code, drops, drop, *asked.bodies(drops))[0]
 
 
 def _assumed(code: ContactFormula, asked: Asked, drops: Drops) -> Iterator[str]:

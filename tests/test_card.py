@@ -13,16 +13,18 @@ from pathlib import Path
 
 import pytest
 
+from loopsheet.derivations.contact.power_law import POWER_LAW
 from loopsheet.report.cli import main
 from loopsheet.report.impacts.card import Unreachable, card
 from loopsheet.report.impacts.code import SimulationCode
 from loopsheet.report.impacts.codes import CODES
+from loopsheet.report.impacts.contact import law_of
 from loopsheet.report.impacts.damping import number_for
 from loopsheet.report.impacts.drops import Drops
 from loopsheet.report.impacts.law import ForceLaw, rate, x
-from loopsheet.report.impacts.simulation import simulate
+from loopsheet.report.impacts.simulation import Impact, simulate
 from loopsheet.report.impacts.source import SOURCES, identified
-from loopsheet.report.impacts.sweep import as_csv, sweep
+from loopsheet.report.impacts.sweep import as_csv, course_as_csv, repeated, sweep
 from loopsheet.report.result.card import Card
 
 STEEL = Drops(
@@ -200,6 +202,70 @@ def test_the_law_as_a_table_has_the_loop_of_the_measured_loss() -> None:
     assert rows[-1][2] == 0
     area = sum((b[1] - a[1]) * (a[2] + b[2]) / 2 for a, b in pairwise(rows))
     assert area == pytest.approx((1 - 0.479**2) * STEEL.mass * 4.089**2 / 2, rel=1e-4)
+
+
+# --- impacts in the same place ------------------------------------------------------------------------------
+def one_after_another(e: float, alpha: float, impacts: int) -> list[tuple[float, float]]:
+    """Restitution and greatest approach of impacts in one place, over that of the first, under law (3).
+
+    Each is loaded along the restitution of those before, which takes e^2 of the work y of the curve so far,
+    over the energy of an impact; what is left goes on along the curve: 1 = e^2 y + (y' - y).
+    """
+    found, share = [], 0.0
+    for _ in range(impacts):
+        share = share * (1 - e**2) + 1
+        found.append((e * math.sqrt(share), share ** (1 / (alpha + 1))))
+    return found
+
+
+def test_impacts_in_the_same_place_are_as_the_energies_say() -> None:
+    """Under law (3) with one share of the imprint; the fifth returns nearly all."""
+    model = law_of(POWER_LAW)
+    given = {"C": STEEL.C, "alpha": STEEL.alpha, "beta": 1.5, "e": 0.479}
+    constants = {symbol: given[str(symbol)] for symbol in model.constants}
+    found = repeated(model, constants, STEEL.mass, 4.089, 5)
+    assert [each.failure for each in found] == [""] * 5
+    for each, (e, ratio) in zip(found, one_after_another(0.479, STEEL.alpha, 5), strict=True):
+        assert each.e == pytest.approx(e, rel=1e-9)
+        assert each.x_m == pytest.approx(found[0].x_m * ratio, rel=1e-9)
+        assert each.F_m == pytest.approx(STEEL.C * each.x_m**STEEL.alpha, rel=1e-9)
+        assert each.loss == pytest.approx((1 - each.e**2) * STEEL.mass * 4.089**2 / 2, rel=1e-9)
+    slow = simulate(model, constants, STEEL.mass, 0.9 * found[-1].e * 4.089, found[-1].x_m)
+    assert slow.e == pytest.approx(1, abs=1e-9)  # it goes no deeper, and so loses nothing
+    assert slow.x_p == pytest.approx(found[-1].x_p, rel=1e-12)
+    assert found[-1].x_p < slow.x_m < found[-1].x_m
+
+
+def test_a_program_with_the_law_goes_on_in_the_same_crater() -> None:
+    """The function in Python with its x_max, in small steps, for two impacts."""
+    space: dict[str, Callable[[float, float], float]] = {}
+    exec(SOURCES["python"].printed(identified(STEEL, STEEL.middle)), space)
+    expected = repeated(STEEL.law(), {}, STEEL.mass, 4.089, 2)
+    x_max, start, step = 0.0, 0.0, 2e-9
+    for each in expected:
+        place, rate = start, 4.089
+        while rate > 0 or space["contact_force"](place, x_max) > 0:
+            rate -= step / 2 * space["contact_force"](place, x_max) / STEEL.mass
+            place += step * rate
+            x_max = max(x_max, place)
+            rate -= step / 2 * space["contact_force"](place, x_max) / STEEL.mass
+        start = place
+        assert (-rate / 4.089, x_max) == pytest.approx((each.e, each.x_m), rel=1e-5)
+
+
+def test_the_course_of_impacts_keeps_their_energy(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["card", "paper", "--for", "table", "--course", "2"]) == 0
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert head == "impact,t [s],x [m],v [m/s],F [N],kinetic energy [J],work of the force [J],failure"
+    rows = [[float(cell) for cell in line.split(",")[:-1]] for line in lines]
+    for row in rows:
+        assert row[5] + row[6] == pytest.approx(STEEL.mass * 4.089**2 / 2, rel=1e-9)
+    first, second = ([row for row in rows if row[0] == number] for number in (1, 2))
+    assert first[0][1:5] == [0, 0, 4.089, 0]
+    assert first[-1][2:4] == pytest.approx([second[0][2], -0.479 * 4.089], rel=1e-8)
+    assert second[-1][3] < first[-1][3]
+    impacts = [Impact(failure="none")]
+    assert course_as_csv(impacts, 1.0).splitlines()[1] == '1,,,,,,,"none"'
 
 
 # --- the command ------------------------------------------------------------------------------------------

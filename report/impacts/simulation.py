@@ -57,8 +57,9 @@ class Impact:
     approach: NDArray[np.float64] | None = None
     speed: NDArray[np.float64] | None = None
     force: NDArray[np.float64] | None = None
-    """`time`, `approach`, `speed` and `force`: of shape (steps,); the course of it, where the integration
-    stepped."""
+    work: NDArray[np.float64] | None = None
+    """`time`, `approach`, `speed`, `force` and `work`: of shape (steps,); the course of it, where the
+    integration stepped, and the work of the force so far."""
     failure: str = ""
     """Why there is nothing of all this; empty, if there is."""
 
@@ -67,7 +68,9 @@ class _Stopped(Exception):
     """The integration cannot go on; the message is the sentence."""
 
 
-def simulate(law: ForceLaw, constants: Mapping[Symbol, float], mass: float, speed: float) -> Impact:
+def simulate(
+    law: ForceLaw, constants: Mapping[Symbol, float], mass: float, speed: float, before: float = 0.0
+) -> Impact:
     """Simulate one impact.
 
     Parameters
@@ -78,6 +81,9 @@ def simulate(law: ForceLaw, constants: Mapping[Symbol, float], mass: float, spee
         The reduced mass in kg.
     speed : float
         The impact speed in m/s.
+    before : float
+        The greatest approach of impacts in the same place before, in m: the bodies touch at the imprint that
+        it left, and are loaded along its restitution up to it.
 
     Returns
     -------
@@ -98,7 +104,7 @@ def simulate(law: ForceLaw, constants: Mapping[Symbol, float], mass: float, spee
     try:
         forces = law.at(mass, speed, constants)
         depth = depth_of(forces, mass, speed)
-        return _Course(forces, mass, speed, depth).impact()
+        return _Course(forces, mass, speed, depth, before).impact()
     except _Stopped as stopped:
         return Impact(failure=str(stopped))
     except (ArithmeticError, TypeError, ValueError) as error:
@@ -121,14 +127,24 @@ def depth_of(forces: Forces, mass: float, speed: float) -> float:
 class _Course:
     """An integration in progress: lengths over `depth`, speeds over the impact speed, work over m v^2."""
 
-    def __init__(self, forces: Forces, mass: float, speed: float, depth: float) -> None:
+    def __init__(self, forces: Forces, mass: float, speed: float, depth: float, before: float) -> None:
         self.forces, self.mass, self.speed, self.depth = forces, mass, speed, depth
         self.unit = mass * speed**2 / depth
-        self.t, self.state = 0.0, np.array([0.0, 1.0, 0.0])
         self.pieces: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]] = []
         self.peak = 0.0
         self.greatest = math.nan
         self.imprint = self.least = 0.0
+        if before > 0:
+            self._leave(before / depth)
+        self.t, self.state = 0.0, np.array([self.least, 1.0, 0.0])
+
+    def _leave(self, greatest: float) -> None:
+        """What a greatest approach leaves."""
+        self.greatest = greatest
+        self.imprint = self.forces.imprint(self.depth * greatest)
+        self.least = self.imprint / self.depth
+        if not 0 <= self.least < greatest:
+            raise _Stopped("the bodies would part at a depth that is not below the greatest approach")
 
     def force(self, approach: float, rate: float) -> float:
         """The force of the law, over its unit; it may be negative."""
@@ -148,14 +164,13 @@ class _Course:
 
     def impact(self) -> Impact:
         """Go through it all."""
-        self._go(self._turns, peak=True)
-        self.greatest = float(self.state[0])
-        compression = self.t
-        self.imprint = self.forces.imprint(self.depth * self.greatest)
-        self.least = self.imprint / self.depth
-        if not 0 <= self.least < self.greatest:
-            raise _Stopped("the bodies would part at a depth that is not below the greatest approach")
-        self.peak = max(self.peak, self.acting(self.greatest, 0.0))
+        # What was loaded before is loaded anew first; an impact that turns there goes no deeper.
+        if math.isnan(self.greatest) or self._go(self._turns, self._was_here) == 1:
+            self.greatest = math.nan
+            self._go(self._turns, peak=True)
+            self._leave(float(self.state[0]))
+        compression, deepest = self.t, float(self.state[0])
+        self.peak = max(self.peak, self.acting(deepest, 0.0))
         over = self._restitution()
         if -float(self.state[1]) < SLOWEST:
             raise _Stopped("the bodies do not part: the damping is as strong as the spring")
@@ -163,7 +178,7 @@ class _Course:
         second, energy = self.depth / self.speed, self.mass * self.speed**2
         return Impact(
             e=-float(self.state[1]),
-            x_m=self.depth * self.greatest,
+            x_m=self.depth * deepest,
             F_m=self.unit * self.peak,
             x_p=self.depth * self.least,
             duration=second * over,
@@ -173,6 +188,7 @@ class _Course:
             approach=self.depth * states[0],
             speed=self.speed * states[1],
             force=self.unit * force,
+            work=energy * states[2],
         )
 
     def _restitution(self) -> float:
@@ -245,6 +261,9 @@ class _Course:
 
     def _turns(self, _: float, state: NDArray[np.float64]) -> float:
         return float(state[1])
+
+    def _was_here(self, _: float, state: NDArray[np.float64]) -> float:
+        return self.greatest - float(state[0])
 
     def _parts(self, _: float, state: NDArray[np.float64]) -> float:
         return float(state[0]) - self.least

@@ -1,4 +1,4 @@
-"""Many impacts under one force law, over a range of speeds."""
+"""Many impacts under one force law: over a range of speeds, or one after the other in the same place."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ if TYPE_CHECKING:
 
     from .law import ForceLaw
 
-__all__ = ["as_csv", "sweep"]
+__all__ = ["as_csv", "course_as_csv", "repeated", "sweep"]
 
+COURSE = "impact,t [s],x [m],v [m/s],F [N],kinetic energy [J],work of the force [J],failure"
 HEAD = "v [m/s],e [1],x_m [m],F_m [N],x_p [m],duration [s],compression [s],loss [J],failure"
 
 
@@ -40,6 +41,31 @@ def sweep(
         told(f"simulating {number} of {len(speeds)} impacts")
         found.append(simulate(law, constants, mass, speed))
     return found
+
+
+def repeated(
+    law: ForceLaw, constants: Mapping[Symbol, float], mass: float, speed: float, impacts: int
+) -> list[Impact]:
+    """Simulate impacts at one speed, each in the crater of those before it, up to one that there is not."""
+    found, before = [Impact()], 0.0
+    while len(found) <= impacts and not found[-1].failure:
+        found.append(simulate(law, constants, mass, speed, before))
+        before = max(before, found[-1].x_m)
+    return found[1:]
+
+
+def course_as_csv(impacts: Sequence[Impact], mass: float) -> str:
+    """What happens step by step, with the digits that are sure; of an impact that there is not, why."""
+    lines = [COURSE]
+    for number, each in enumerate(impacts, 1):
+        if each.failure:
+            lines.append(f'{number},,,,,,,"{each.failure}"')
+            continue
+        assert each.speed is not None
+        columns = (each.time, each.approach, each.speed, each.force, mass * each.speed**2 / 2, each.work)
+        for row in zip(*(column for column in columns if column is not None), strict=True):
+            lines.append(",".join([f"{number}", *(f"{value:.10g}" for value in row), ""]))
+    return "\n".join(lines)
 
 
 def as_csv(speeds: Sequence[float], impacts: Sequence[Impact]) -> str:

@@ -18,6 +18,8 @@ HELP = "tell what to type into a simulation code, so that its contact returns wh
 
 MOST = 100_000
 """Impacts of a sweep: a quarter of an hour."""
+MOST_IN_ONE_PLACE = 1000
+"""Impacts of a course, of some hundred lines each."""
 _NUMBERS = {"speed": "m/s", "E": "GPa", "nu": "1", "R": "m"}
 """The options that are numbers, and the unit of one that names none."""
 
@@ -43,17 +45,27 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     said = "effective radius of the contact, such as '6.35 mm' (default: that of the ball)"
     parser.add_argument("--R", metavar="R", help=said)
     said = "instead of the card, N impacts under it from the slowest to the fastest measured speed, as CSV"
-    parser.add_argument("--sweep", metavar="N", type=_impacts, help=said)
+    many = parser.add_mutually_exclusive_group()
+    many.add_argument("--sweep", metavar="N", type=_impacts, help=said)
+    said = (
+        "instead of the card, time, approach, speed, force and energies of N impacts under it, one after the "
+        "other in the same place, as CSV"
+    )
+    many.add_argument("--course", metavar="N", type=_impacts_in_one_place, help=said)
     format_argument(parser, "text", "markdown", "json")
     keeping_arguments(parser)
 
 
-def _impacts(text: str) -> int:
+def _impacts(text: str, least: int = 2, most: int = MOST) -> int:
     """Read how many impacts there shall be, for argparse."""
     number = count(text)
-    if not 2 <= number <= MOST:
-        raise argparse.ArgumentTypeError(f"not from 2 to {MOST} impacts: '{text}'")
+    if not least <= number <= most:
+        raise argparse.ArgumentTypeError(f"not from {least} to {most} impacts: '{text}'")
     return number
+
+
+def _impacts_in_one_place(text: str) -> int:
+    return _impacts(text, 1, MOST_IN_ONE_PLACE)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -74,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
             if text is not None and text not in known:
                 hint, allowed = suggest(text, known), listing(known, most=20) or "none in this folder"
                 raise UsageError(diagnose("LS604", kind=kind, text=text, known=allowed, suggestion=hint))
-        names = ("code", "model", "speed", "E", "nu", "R", "format", "sweep")
+        names = ("code", "model", "speed", "E", "nu", "R", "format", "sweep", "course")
         parts = [f"{name} {getattr(options, name)!r}" for name in names]
         # What is found names its place, and so the folder as it is written here.
         made, found = study.kept("card", lambda: _told(study, options), *parts, str(study.folder))
@@ -96,7 +108,18 @@ def _told(study: Study, options: argparse.Namespace) -> tuple[str, list[str]]:
 
 
 def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
-    from ..cards import Asked, NoImpacts, NotTogether, card, contacts_of, drop_at, drops_of, swept, taken
+    from ..cards import (
+        Asked,
+        NoImpacts,
+        NotTogether,
+        card,
+        contacts_of,
+        course,
+        drop_at,
+        drops_of,
+        swept,
+        taken,
+    )
     from ..impacts.card import Unreachable
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
@@ -115,8 +138,9 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
     if options.model is not None:
         raise wrong(f"--model says nothing to --for {options.code}", f"--for {listing(SOURCES)}")
     code = CODES[options.code] if options.code in CODES else contacts_of(report)[options.code]
-    if options.sweep is not None and options.format != "text":
-        raise wrong(f"--format {options.format} says nothing to --sweep", "leave --format out")
+    for name in ("sweep", "course"):
+        if getattr(options, name) is not None and options.format != "text":
+            raise wrong(f"--format {options.format} says nothing to --{name}", "leave --format out")
     try:
         asked = Asked("--", **{name: _read(options, name) for name in _NUMBERS})
         asked.check([code], drops)
@@ -124,6 +148,8 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
         study.step("solving for the parameters")
         if options.sweep is not None:
             return swept(code, drops, drop, asked, options.sweep, study.step)
+        if options.course is not None:
+            return course(code, drops, drop, asked, options.course)
         made = card(code, drops, drop, report.title, asked)
     except NotTogether as error:
         raise wrong(error.reason, error.known) from error
@@ -134,7 +160,7 @@ def _made(study: Study, report: Report, options: argparse.Namespace) -> str:
 
 def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace, remarks: list[str]) -> str:
     """The identified law itself, or that of a contact model."""
-    from ..cards import Asked, NotTogether, contacts_of, drop_at, swept
+    from ..cards import Asked, NotTogether, contacts_of, course, drop_at, swept
     from ..impacts.card import Unreachable
     from ..impacts.source import SOURCES, identified, modelled
     from ..messages.errors import UsageError, diagnose, wrong
@@ -143,7 +169,8 @@ def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace
     at_speed = options.code == "table" or options.model is not None
     names += ["speed"] if options.speed is not None and not at_speed else []
     names += ["format"] if options.format != "text" else []
-    names += ["sweep"] if options.sweep is not None and options.code != "table" else []
+    table = options.code == "table"
+    names += [name for name in ("sweep", "course") if getattr(options, name) is not None and not table]
     if names:
         raise wrong(f"--{names[0]} says nothing to --for {options.code}", f"leave --{names[0]} out")
     model = None if options.model is None else contacts_of(report)[options.model]
@@ -156,6 +183,8 @@ def _law(study: Study, report: Report, drops: Drops, options: argparse.Namespace
     try:
         if options.sweep is not None:
             return swept(model, drops, drop, Asked(), options.sweep, study.step)
+        if options.course is not None:
+            return course(model, drops, drop, Asked(), options.course)
         written = identified(drops, drop) if model is None else modelled(model, drops, drop)
     except Unreachable as error:
         raise UsageError(diagnose("LS625", text=options.model, reason=error)) from error
