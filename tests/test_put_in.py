@@ -30,7 +30,8 @@ def test_hertz_is_calculated_as_on_paper() -> None:
         r"2.31669 \times 10^{9}\,\text{N}/\text{m}^{3/2}",
         "(4)": r"F = \left(2.31669 \times 10^{9}\right) \cdot 0.004^{1.5} = 586081\,\text{N}",
         "(5)": r"a = \sqrt{0.025 \cdot 0.004} = 0.01\,\text{m}",
-        "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586081}{\pi \cdot 0.01^{2}} = -2.79833 \times 10^{9}\,\text{Pa}",
+        "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586081}{\pi \cdot 0.01^{2}} = "
+        r"-2.79833 \times 10^{9}\,\text{Pa}",
     }
 
 
@@ -45,7 +46,8 @@ def test_what_is_given_keeps_its_digits_and_what_is_negative_has_brackets() -> N
     (told,) = _told(DATA / "gum_h1").values()
     assert told == (
         r"l = \left(2.15 \times 10^{-7}\right) + 0.050000623 - 0.050000623 \cdot "
-        r"(\left(1.15 \times 10^{-5}\right) \cdot 0 + 0 \cdot (0 + \left(-0.1\right))) = 0.050000838\,\text{m}"
+        r"(\left(1.15 \times 10^{-5}\right) \cdot 0 + 0 \cdot (0 + \left(-0.1\right))) = "
+        r"0.050000838\,\text{m}"
     )
 
 
