@@ -17,7 +17,6 @@ import difflib
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
-from contextvars import ContextVar
 from dataclasses import replace
 from typing import Any
 
@@ -29,8 +28,9 @@ from .charts import BLUE, VERMILION, Chart, Series
 from .column import Column, SheetError
 from .messages.errors import listing
 from .method_body import MethodBody
+from .method_errors import CURRENT, WatchedBody, told_together
 from .method_lines import ComputedLine, Declaration, FitLine, InputLine, PointsLine, UnknownLine, exact
-from .method_workbook import workbook_of
+from .method_made import workbook_of
 from .named import name_of
 from .quantity import Bounds, behind
 from .workbook import FigureSpec, TableSpec, Workbook, sentence_case
@@ -66,6 +66,7 @@ _CODATA = {
 """What constants are called whose letters everybody writes."""
 
 
+@told_together
 def given(
     unit: str,
     meaning: str,
@@ -109,6 +110,7 @@ def given(
     )
 
 
+@told_together
 def constant(name: str, *, latex: str = "") -> Any:
     """Declare a constant of nature: its value, unit and uncertainty are CODATA's, as scipy has them.
 
@@ -143,6 +145,7 @@ def constant(name: str, *, latex: str = "") -> Any:
     return _said(InputLine(f"{name}, CODATA", unit, column, bounds, default, is_constant=True))
 
 
+@told_together
 def measured(
     unit: str,
     meaning: str,
@@ -159,6 +162,7 @@ def measured(
     return _said(said)
 
 
+@told_together
 def let(
     formula: Any,
     meaning: str,
@@ -196,6 +200,7 @@ def let(
     return _said(ComputedLine(meaning, unit, column, (exact(formula),), label, because))
 
 
+@told_together
 def unknown(
     meaning: str = "",
     unit: str = "",
@@ -223,6 +228,7 @@ def unknown(
     return UnknownLine(meaning, unit, column, None if start is None else exact(start), bounds)
 
 
+@told_together
 def root(
     left: Any,
     right: Any,
@@ -273,6 +279,7 @@ def root(
     return _said(ComputedLine(meaning, unit, column, sides, label, because, ends))
 
 
+@told_together
 def fit(
     observed: Any, model: Any, *, u: Any = None, label: str = "", figures: bool = True, of: Any = None
 ) -> Any:
@@ -306,6 +313,7 @@ def fit(
     return _said(FitLine(observed, exact(model), weights, label, figures, of))
 
 
+@told_together
 def total(formula: Any, *, of: Any = None) -> Expr:
     """The sum over all rows; in the body of a method it may be written ``sum`` as well.
 
@@ -319,11 +327,13 @@ def total(formula: Any, *, of: Any = None) -> Expr:
     return _body().total(formula, of=of)
 
 
+@told_together
 def mean(formula: Any, *, of: Any = None) -> Expr:
     """The mean over all rows, or over all pairs, or over the rows of each group; as :func:`total`."""
     return _body().mean(formula, of)
 
 
+@told_together
 def median(formula: Any, *, of: Any = None) -> Expr:
     """The median over all rows, or all pairs, or the rows of each group; as :func:`total`.
 
@@ -334,6 +344,7 @@ def median(formula: Any, *, of: Any = None) -> Expr:
     return _body().ordered(Median, formula, of)
 
 
+@told_together
 def count(formula: Any = 0, *, of: Any = None) -> Expr:
     """How many rows the sums beside it run over; of a formula, in how many rows, or pairs, it has a value.
 
@@ -346,6 +357,7 @@ def count(formula: Any = 0, *, of: Any = None) -> Expr:
     return _body().number(formula, of)
 
 
+@told_together
 def derivative(formula: Any, by: Any) -> Expr:
     """The derivative of a formula by a quantity, with all that rests on it put in.
 
@@ -420,6 +432,7 @@ def pairs(
     return _body().paired(index, size, both)
 
 
+@told_together
 def points(
     low: Any,
     high: Any,
@@ -448,6 +461,7 @@ def points(
     return _said(PointsLine(meaning, unit, column, exact(low), exact(high), number, label))
 
 
+@told_together
 def claim(
     left: Any,
     right: Any,
@@ -476,6 +490,7 @@ def claim(
     method_algebra.claimed(_body(), exact(left), exact(right), meaning, because, from_, label)
 
 
+@told_together
 def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None:
     """Show points of two columns, with bars of standard uncertainties, and what is computed beside them.
 
@@ -525,6 +540,7 @@ def _series(x: Column, y: Column) -> Series:
     return Series(x.name, y.name, f"{y.meaning}, %s", each=True)
 
 
+@told_together
 def table(title: str, *columns: Any, note: str = "") -> None:
     """Show columns beside each other, or numbers below each other; all that no table shows follows by itself.
 
@@ -554,12 +570,9 @@ def _bounds(low: float | None, high: float | None, positive: bool, whole: bool =
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
 
 
-_CURRENT: ContextVar[MethodBody | None] = ContextVar("_CURRENT", default=None)
-
-
 def _body() -> MethodBody:
     """That of the method which is being declared."""
-    body = _CURRENT.get()
+    body = CURRENT.get()
     if body is None:
         raise SheetError("sums, counts and plots stand in the body of a class of Method")
     return body
@@ -567,7 +580,7 @@ def _body() -> MethodBody:
 
 def _said(line: Declaration | FitLine) -> Any:
     """What a line declares; the name comes with the assignment, and must come."""
-    body = _CURRENT.get()
+    body = CURRENT.get()
     if body is not None:
         body.unnamed.append(line)
     return line
@@ -583,9 +596,9 @@ class _Declaring(type):
         cls, name: str, bases: tuple[type, ...], /, *, rows: str = "readings",
         index: str = "k", size: str = "n", **more: Any,
     ) -> MethodBody:  # fmt: skip
-        body = MethodBody(rows, index, size)
+        body = WatchedBody(rows, index, size)
         if bases:
-            _CURRENT.set(body)
+            CURRENT.set(body)
         if bases and bases != (Method,):
             raise SheetError("a method is a class of Method alone")
         return body
@@ -610,8 +623,10 @@ class _Declaring(type):
         """
         found = super().__new__(cls, name, bases, dict(body))
         if bases:
-            assert isinstance(body, MethodBody)
-            _CURRENT.set(None)
+            assert isinstance(body, WatchedBody)
+            if body.wrong:
+                raise body.first_wrong
+            CURRENT.set(None)
             title = (found.__doc__ or name).strip().partition("\n")[0].removesuffix(".")
             found.workbook = workbook_of(name, body, title, source, re.findall(r"\w+", headline))
         return found

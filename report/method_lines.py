@@ -56,6 +56,10 @@ class Declaration:
         for what, text in (("meaning", self.meaning), ("unit", self.unit)):
             if not isinstance(text, str):
                 raise SheetError(f"a {what} is a text in quotes, not {text!r}")
+        if self.unit.strip() and not _is_unit(self.unit) and self.meaning.strip() and _is_unit(self.meaning):
+            raise SheetError(
+                f"{self.unit!r} is no unit, and {self.meaning!r}, the meaning, is: have they changed places?"
+            )
 
 
 @dataclass(frozen=True)
@@ -131,6 +135,13 @@ def size_of(name: str, unit: str) -> ParsedUnit:
         hint = f"; {error.suggestion}" if error.suggestion else ""
         kind = "is unknown" if error.code == "LS421" else "cannot be read"
         raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        return bool(parse_open(text))
+    except UnitError:
+        return False
 
 
 def unit_in_si(size: ParsedUnit) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 import types
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import signature
 from pathlib import Path
@@ -134,10 +134,7 @@ class _Own:
             except (KeyboardInterrupt, LoopsheetError):
                 raise
             except BaseException as error:  # sys.exit() too: it must not end us as if all were well
-                ours = isinstance(error, SheetError)
-                self.refuse(
-                    str(error) if ours else f"{type(error).__name__}: {error}".removesuffix(": "), error
-                )
+                self.refuse(_said(error), error)
             if not isinstance(found, kind):
                 self.refuse(f"{what} is no {getattr(kind, '__name__', kind)}")
             return found
@@ -156,12 +153,30 @@ class _Own:
         if isinstance(error, SheetError) and str(found.at.source).lstrip().startswith("class "):
             at = place_of_column(self.path, self.code, error.about)  # told at the end of its body
             found = replace(found, at=at) if at.line else found
-        raise InputError(found) from error
+        raise InputError(*self.met_before(error, found)) from error
+
+    def met_before(self, error: BaseException | None, found: Diagnostic) -> Iterator[Diagnostic]:
+        """What was wrong in the body of a method, and the finding, unless it follows from that."""
+        from .method_errors import CURRENT
+
+        body = CURRENT.get()
+        CURRENT.set(None)
+        for line, each in body.wrong.items() if body else ():
+            yield self.finding(line, _said(each), _hint(each))
+        named = set(re.findall(r"\w+", str(found.at.source)))
+        if body is None or (error not in body.wrong.values() and named.isdisjoint(body.without)):
+            yield found
 
     def finding(self, line: int | None, reason: str, hint: str) -> Diagnostic:
         """A finding at a line of the file."""
         at = _place(self.path, self.code, line)
         return diagnose("LS213", at, text=self.path.name, reason=reason, suggestion=hint)
+
+
+def _said(error: BaseException) -> str:
+    """What a sheet complains of, or what Python does, with its name."""
+    ours = isinstance(error, SheetError)
+    return str(error) if ours else f"{type(error).__name__}: {error}".removesuffix(": ")
 
 
 def _hint(error: BaseException) -> str:

@@ -19,7 +19,15 @@ from ..named import name_of
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 
-__all__ = ["Dimension", "DimensionMismatch", "check", "dimension_of_unit", "named_unit_of", "unit_of"]
+__all__ = [
+    "Dimension",
+    "DimensionMismatch",
+    "check",
+    "check_column",
+    "dimension_of_unit",
+    "named_unit_of",
+    "unit_of",
+]
 
 
 class DimensionMismatch(SheetError):
@@ -88,34 +96,39 @@ def check(sheet: Sheet) -> None:
         Names the column, its equation, the expression and both dimensions.
     """
     for column in sheet.columns:
-        checker = _Checker(sheet, column)
-        try:
-            own = dimension_of_unit(column.unit, exponents(sheet, column, None))
-        except DimensionMismatch as problem:
-            raise DimensionMismatch(f"{column.name}: {problem}", column.unit, column.name) from None
-        rule = column.rule
-        if isinstance(rule, Formula):
-            _expect(checker, rule.expression, own)
-        elif isinstance(rule, Iterated):
-            _expect(checker, rule.step, own)
-            if not rule.start.is_number:  # a number is one in SI
-                _expect(checker, rule.start, own)
-        elif isinstance(rule, Root):
-            checker.of(rule.expression)
-            _expect(checker, rule.value, own)
-            for place in (rule.low, rule.high, rule.start, *rule.turning):
-                if not place.is_number:  # a number is in SI
-                    _expect(checker, place, checker.of_unknown())
-            for end in (rule.sign_low, rule.sign_high):
-                if end is not None:
-                    checker.of(end)
-        elif not isinstance(rule, Given):
-            raise SheetError(f"{column.name}: unknown kind of rule {rule!r}", column.name)
-        for condition, _ in column.requires:
-            checker.relation(condition)
-        for limit in column.limits:
-            if not isinstance(limit.inside, Bounds):
-                checker.relation(limit.inside)
+        check_column(sheet, column)
+
+
+def check_column(sheet: Sheet | Mapping[str, Column], column: Column) -> None:
+    """Check one of them, of a sheet or among the columns that there are."""
+    checker = _Checker(sheet, column)
+    try:
+        own = dimension_of_unit(column.unit, exponents(sheet, column, None))
+    except DimensionMismatch as problem:
+        raise DimensionMismatch(f"{column.name}: {problem}", column.unit, column.name) from None
+    rule = column.rule
+    if isinstance(rule, Formula):
+        _expect(checker, rule.expression, own)
+    elif isinstance(rule, Iterated):
+        _expect(checker, rule.step, own)
+        if not rule.start.is_number:  # a number is one in SI
+            _expect(checker, rule.start, own)
+    elif isinstance(rule, Root):
+        checker.of(rule.expression)
+        _expect(checker, rule.value, own)
+        for place in (rule.low, rule.high, rule.start, *rule.turning):
+            if not place.is_number:  # a number is in SI
+                _expect(checker, place, checker.of_unknown())
+        for end in (rule.sign_low, rule.sign_high):
+            if end is not None:
+                checker.of(end)
+    elif not isinstance(rule, Given):
+        raise SheetError(f"{column.name}: unknown kind of rule {rule!r}", column.name)
+    for condition, _ in column.requires:
+        checker.relation(condition)
+    for limit in column.limits:
+        if not isinstance(limit.inside, Bounds):
+            checker.relation(limit.inside)
 
 
 def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:

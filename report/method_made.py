@@ -1,4 +1,4 @@
-"""The workbook that the body of a method makes: its sheet, its ledger and what a report shows of them."""
+"""The workbook that the body of a method makes."""
 
 from __future__ import annotations
 
@@ -34,9 +34,12 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
 
 
 def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
-    """The workbook of a body that is declared whole; what is wrong with all of it is told now.
+    """All that it declares.
 
-    `headline`: the names of the results; of none, those of which nothing else is computed.
+    Parameters
+    ----------
+    name : str
+        Of the class.
     """
     entries = tuple(body.entries)
     for line in body.unnamed:

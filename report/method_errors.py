@@ -1,0 +1,118 @@
+"""What is wrong in the body of a method, told at once: behind a line that fails the others are read.
+
+What fails stands for something of which nothing is known; what names that is passed over without a word.
+"""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextvars import ContextVar
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar, cast
+
+from sympy import Basic, Symbol
+
+from .cells.units import check_column
+from .column import SheetError
+from .method_body import MethodBody
+from .method_lines import ComputedLine
+
+__all__ = ["CURRENT", "WatchedBody", "told_together"]
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class _Failed(Symbol):  # type: ignore[misc]
+    """The place of what could not be declared."""
+
+    __slots__ = ()
+
+    def __getattr__(self, name: str) -> Any:
+        """What a fit would have."""
+        if name.startswith(("_", "is_")):
+            raise AttributeError(name)
+        return self
+
+
+class WatchedBody(MethodBody):
+    """A body that goes on behind a line that is wrong."""
+
+    def __init__(self, rows: str, index: str, size: str) -> None:
+        super().__init__(rows, index, size)
+        self.wrong: dict[int, Exception] = {}
+        """By line, in the order in which they stand; of a line the first alone."""
+
+    def failed(self, error: Exception, line: int) -> Any:
+        """Remember an error; what stands for what the line declares."""
+        self.wrong.setdefault(line, error)
+        return _Failed("_")
+
+    @property
+    def first_wrong(self) -> Exception:
+        """The first error, with all of them as its notes."""
+        first = next(iter(self.wrong.values()))
+        for line, error in self.wrong.items():
+            first.add_note(f"line {line}: {error}")
+        return first
+
+    @property
+    def without(self) -> set[str]:
+        """The names of which nothing is known."""
+        return {name for name, value in self.items() if any(_failed_in(value))}
+
+    def __missing__(self, name: str) -> Any:
+        try:
+            return told_together(super().__missing__(name))
+        except KeyError:
+            around = sys._getframe(1)
+            beyond = name in around.f_globals or name in around.f_code.co_freevars or hasattr(builtins, name)
+            if beyond or name.startswith("__"):
+                raise
+            return self.failed(NameError(f"name {name!r} is not defined", name=name), around.f_lineno)
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        try:
+            super().__setitem__(name, value)
+            if isinstance(value, ComputedLine):
+                check_column(self.columns, self.columns[name])
+        except SheetError as error:
+            failed = self.failed(error, sys._getframe(1).f_lineno)
+            self.unnamed = [said for said in self.unnamed if said is not value]
+            if name not in self:
+                dict.__setitem__(self, name, failed)
+
+
+CURRENT: ContextVar[WatchedBody | None] = ContextVar("CURRENT", default=None)
+"""That of the method which is being declared, or which could not be."""
+
+
+def told_together(word: Callable[P, T]) -> Callable[P, T]:
+    """A word of methods that remembers what is wrong with its line, where that stands in a body."""
+
+    @wraps(word)
+    def said(*arguments: P.args, **named: P.kwargs) -> T:
+        body = CURRENT.get()
+        if body is None:
+            return word(*arguments, **named)
+        if any(_failed_in((arguments, named))):
+            return cast(T, _Failed("_"))
+        try:
+            return word(*arguments, **named)
+        except (SheetError, TypeError) as error:
+            return cast(T, body.failed(error, sys._getframe(1).f_lineno))
+
+    return said
+
+
+def _failed_in(value: Any) -> Iterator[_Failed]:
+    """What failed among the formulas of a value."""
+    if isinstance(value, Basic):
+        yield from value.atoms(_Failed)
+    elif isinstance(value, Mapping):
+        yield from _failed_in((*value, *value.values()))
+    elif isinstance(value, tuple | list):
+        for each in value:
+            yield from _failed_in(each)

@@ -1,0 +1,119 @@
+"""All that is wrong in the body of a method is told at once, and nothing that follows from it."""
+
+from pathlib import Path
+
+import pytest
+
+from loopsheet import Method, let, measured
+from loopsheet.report.column import SheetError
+from loopsheet.report.messages.errors import InputError
+from loopsheet.report.study import Study
+
+HEAD = """\
+from sympy import log
+from loopsheet import (
+    Method, claim, constant, fit, given, let, mean, measured, plot, root, table, unknown
+)
+
+
+class Lab(Method):
+    "Lab."
+
+    x = measured("mm", "length", positive=True)
+    y = measured("N", "force")
+    K = given("N/mm", "stiffness")
+"""
+FIRST = HEAD.count("\n") + 1
+
+WRONG = {
+    "units, sums and areas": (
+        """\
+b = given("furlongs per day", "speed")
+d = let(log(x), "logarithm of a length")
+e = let(x + y, "sum of two kinds")
+f = let(K * x, "force", "kg")
+g = let(b * x, "what names a line that is wrong")
+h = let(2 * mean(g) - K * b, "and what names that")
+i = let(K * x, "force", "N")
+""",
+        {0: "furlongs per day", 1: "must be a pure number", 2: "cannot add", 3: "but the formula gives"},
+    ),
+    "words and names": (
+        """\
+a = measured("mm", "width", positiv=True)
+b = let(zz * x, "of a name that there is not")
+c = let(x, 3)
+d = constant("gas constant of moles")
+claim(x, 2 * x, "a length is two")
+plot(x, K)
+table("Mixed", x, K)
+e = let(mean(a * b) + c, "of three wrong lines")
+plot(a, x)
+claim(b, x, "of what is wrong")
+f = let(x**2, "area", "mm")
+""",
+        {0: "'positiv'", 1: "'zz' is not defined", 2: "in quotes, not 3", 3: "CODATA has no",
+         5: "single number", 6: "one kind of rows", 10: "but the formula gives"},
+    ),
+    "a fit and what it has": (
+        """\
+a = unknown("where it begins", "mm")
+b = unknown("N/mm", "slope")
+line = fit(y, a + b * x)
+s = let(line.s / line.residual, "scatter")
+plot(x, line.fitted)
+i = let(K * x, "force", "m")
+q = unknown()
+q = root(q * x, y, "nothing", low=3, high=2)
+""",
+        {1: "have they changed places?", 5: "but the formula gives", 7: "low is not below high"},
+    ),
+    "a line that Python refuses": (
+        """\
+a = let(log(x), "logarithm of a length")
+b = let(x^2, "area")
+""",
+        {0: "must be a pure number", 1: "a power is written x**2"},
+    ),
+    "what Python refuses of what was wrong": (
+        """\
+a = let(log(x), "logarithm of a length")
+b = let(a[1], "of it")
+""",
+        {0: "must be a pure number"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_all_that_is_wrong_is_told_at_once(tmp_path: Path, name: str) -> None:
+    lines, expected = WRONG[name]
+    body = "".join(f"    {line}\n" for line in lines.splitlines())
+    (tmp_path / "workbook.py").write_text(HEAD + body, encoding="utf-8")
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[parameters]\n', encoding="utf-8")
+    with pytest.raises(InputError) as told:
+        _ = Study(tmp_path).computed
+    found = [(each.at.line, str(each)) for each in told.value.diagnostics]
+    assert [line for line, _ in found] == [FIRST + line for line in expected]
+    for (_, said), words in zip(found, expected.values(), strict=True):
+        assert words in said
+
+
+def test_in_python_the_first_has_notes_of_all() -> None:
+    with pytest.raises(SheetError, match="but the formula gives") as told:
+
+        class Wrong(Method):
+            """Two areas that are called lengths."""
+
+            x = measured("mm", "side")
+            A = let(x**2, "area", "mm")
+            B = let(2 * x**2, "area", "mm")
+
+    assert [note.partition(": ")[2][:2] for note in told.value.__notes__] == ["A ", "B "]
+    with pytest.raises(SheetError, match="gives m"):
+
+        class Right(Method):
+            """What was wrong before is forgotten."""
+
+            x = measured("mm", "side")
+            A = let(x, "length", "mm^2")
