@@ -20,6 +20,7 @@ __all__ = [
     "pairs",
     "plot",
     "points",
+    "required",
     "root",
     "table",
     "total",

@@ -21,6 +21,7 @@ from dataclasses import replace
 from typing import Any
 
 from sympy import Expr, false, sympify, true
+from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, StrictLessThan
 
 from ..derivations.reductions import Median
 from . import method_algebra
@@ -51,6 +52,7 @@ __all__ = [
     "pairs",
     "plot",
     "points",
+    "required",
     "root",
     "table",
     "total",
@@ -153,11 +155,12 @@ def measured(
     low: float | None = None,
     high: float | None = None,
     positive: bool = False,
+    exact: bool = False,
     latex: str = "",
     example: str = "",
 ) -> Any:
     """Declare a column of the table of measurements; parameters as for :func:`given`."""
-    column = {"latex": latex, "positive": positive}
+    column = {"exact": exact, "latex": latex, "positive": positive}
     said = InputLine(meaning, unit, column, _bounds(low, high, positive), is_measured=True, example=example)
     return _said(said)
 
@@ -226,6 +229,35 @@ def unknown(
     column = {"latex": latex, "positive": positive}
     bounds = _bounds(low, high, positive)
     return UnknownLine(meaning, unit, column, None if start is None else exact(start), bounds)
+
+
+@told_together
+def required(
+    stays: Any, meaning: str, unit: str = "", *, label: str = "", because: str = "", latex: str = ""
+) -> Any:
+    """Declare where a formula has to stay, ``safe = required(p_0 < 1.6 * Y, "no yield")``.
+
+    What it is called is the margin, ``1.6 * Y - p_0``, which is computed as everything else, and of which the
+    report decides as of a cell under ``[limits]``: it is at least 0, or there is a finding. Limits that
+    report.toml states of it hold in the place of that.
+
+    Parameters
+    ----------
+    stays : relation
+        ``<``, ``<=``, ``>`` or ``>=`` between two formulas, in names of the body; of what has a value for
+        each row, it is of every row. A margin of 0 is met.
+    meaning : str
+        What it is for.
+    unit, label, because, latex : str
+        As for :func:`let`, of the margin.
+    """
+    if not isinstance(stays, GreaterThan | StrictGreaterThan | LessThan | StrictLessThan):
+        said = "holds always" if stays == true else "never holds" if stays == false else "is no comparison"
+        raise SheetError(f"{stays!s} {said}: a limit is of two formulas, p < 1.6 * Y")
+    column = {"latex": latex, "positive": False}
+    margin = (exact(stays.gts - stays.lts),)
+    because = because or f"what is left of {stays}"
+    return _said(ComputedLine(f"{meaning}, margin", unit, column, margin, label, because, is_margin=True))
 
 
 @told_together

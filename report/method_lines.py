@@ -90,6 +90,7 @@ class ComputedLine(Declaration):
     label: str = ""
     because: str = ""
     ends: Mapping[str, Any] | None = None  # of a root: the interval that it lies in, and where it is begun
+    is_margin: bool = False  # which has to be 0 or more
 
 
 @dataclass(frozen=True)

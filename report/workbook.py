@@ -229,6 +229,8 @@ class Workbook:
     """What is to hold of its cells, whatever is measured."""
     constants: frozenset[str] = frozenset()
     """Parameters whose defaults are constants of nature; those that are not exact were adjusted together."""
+    margins: Mapping[str, str] = field(default_factory=dict)
+    """What has to be 0 or more, unless a folder says otherwise, and its unit."""
     aside: frozenset[str] = frozenset()
     """What only leads to other cells: it is in no table, but in those that the workbook declares."""
     fits: tuple[str, ...] = ()

@@ -15,7 +15,7 @@ from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
-from loopsheet import Method, count, given, let, mean, measured, median, plot, root, total, unknown
+from loopsheet import Method, count, given, let, load, mean, measured, median, plot, root, total, unknown
 from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
@@ -200,7 +200,7 @@ def test_what_python_makes_of_typed_numbers_is_what_was_typed() -> None:
 def test_points_and_lines_are_declared(tmp_path: Path, chdir: Callable[[Path], None]) -> None:
     """Every point is in the frame, however far from the line; page and workbook draw the same chart."""
     chdir(tmp_path)
-    assert main(["new", "line", "--workbook", "line"]) == 0
+    assert main(["new", "line", "--workbook", "linefit"]) == 0
     report = Study(Path("line")).report
     fit, left = report.workbook.charts
     assert [(s.x, s.y, s.style) for s in fit.series] == [
@@ -210,6 +210,23 @@ def test_points_and_lines_are_declared(tmp_path: Path, chdir: Callable[[Path], N
     assert [(s.y, s.style) for s in left.series] == [("line_residual", "points")]
     assert "lie outside" not in charts.draw(report, fit).legends[0].get_texts()[0].get_text()
     assert fit.whole
+
+
+def test_a_column_of_choices_is_exact(tmp_path: Path) -> None:
+    code = """\
+from loopsheet import Method, let, measured
+class Doses(Method):
+    dose = measured("g", "dose", exact=True)
+    gain = measured("g", "gain")
+    y = let(gain + dose, "both", "g")
+"""
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("reading,dose [g],gain [g]\n1,5,0.30\n2,9,0.70\n")
+    report = load(tmp_path)
+    assert report["dose"].u.tolist() == [0, 0]
+    assert report["y"].u == pytest.approx(report["gain"].u)
 
 
 def test_what_is_plotted() -> None:
@@ -343,7 +360,7 @@ def test_of_a_wrong_line_nothing_else_is_told(
 
 def test_all_sums_leave_out_the_same_rows(tmp_path: Path) -> None:
     """A line through centred numbers, of which one was not measured, is that through the others."""
-    assert main(["new", str(tmp_path / "c"), "--workbook", "line"]) == 0
+    assert main(["new", str(tmp_path / "c"), "--workbook", "linefit"]) == 0
     report = Study(tmp_path / "c").computed
     data = {name: own.copy() for name, own in report.values.value.items() if name in report.sheet.bounds}
     data["y"][0] = math.nan
@@ -415,7 +432,7 @@ def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.Capture
     ("name", "known"),
     [
         ("formula", {"g": 9.8038}),  # 4 pi^2 0.994 times the mean of the squares of 1/T
-        ("line", {"slope": 0.00299, "later": -0.16554}),
+        ("linefit", {"slope": 0.00299, "later": -0.16554}),
         ("root", {"f": 0.0221745}),
         ("blank", {"y": 1.0}),
         ("fit", {"tau": 3.0442367, "U_0": 5.0049775}),  # as scipy.optimize.curve_fit has them
@@ -438,7 +455,7 @@ def test_a_folder_to_begin_with(
     assert not report.faults
     assert all(proof.status.passes for proof in report.proofs)
     found = {cell: report.values.scalar(cell) for cell in known}
-    assert found == pytest.approx(known, rel=2e-3 if name == "line" else 1e-5)
+    assert found == pytest.approx(known, rel=2e-3 if name == "linefit" else 1e-5)
 
 
 def test_what_can_be_imported_is_listed_and_raised(tmp_path: Path) -> None:

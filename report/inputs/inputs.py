@@ -268,7 +268,8 @@ class _Reader:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
         published = self.published(measurements.words if measurements else ())
-        expected, limits = read_expected(self.tables), read_limits(self.tables)
+        expected = read_expected(self.tables)
+        limits = read_limits(self.tables, self.workbook.margins if self.workbook else {})
         cards = read_cards(self.tables)
         errata = self.errata(measurements) if measurements is not None else {}
         if not computable:
@@ -345,7 +346,8 @@ class _Reader:
         return self.tables.text((), "title")
 
     def open_workbook(self) -> Workbook | None:
-        name = self.tables.text((), "workbook", required=True)
+        beside = (self.folder / "workbook.py").is_file()
+        name = self.tables.text((), "workbook", "workbook.py" if beside else None, required=True)
         if name is None:
             return None
         at = self.toml.value("workbook")

@@ -104,13 +104,23 @@ class Limits:
         return span(low, high)
 
 
-def read_limits(tables: TomlTables) -> tuple[Limits, ...]:
-    """Read the section; what is wrong with it is told where it stands."""
+def read_limits(tables: TomlTables, margins: Mapping[str, str]) -> tuple[Limits, ...]:
+    """Read the section; what is wrong with it is told where it stands.
+
+    `margins`: what the workbook wants to be 0 or more, by name, in which unit; the section may say otherwise.
+    """
     section = tables.toml.data.get(SECTION, {})
     written = tables.keys((SECTION,), section if isinstance(section, dict) else ())
     ruled = isinstance(written.get(RULE), dict)
     guard = _rule(tables) if ruled else Guard()
-    return tuple(_limits(tables, written, guard, ruled))
+    stated = tuple(_limits(tables, written, guard, ruled))
+    at, other = tables.toml.value("workbook"), {each.cell[0] for each in stated}
+    own = (
+        Limits(name, read_printed("0", parse_open(unit)), None, guard, at)
+        for name, unit in margins.items()
+        if name not in other
+    )
+    return (*own, *stated)
 
 
 def _limits(tables: TomlTables, written: Collection[str], guard: Guard, ruled: bool) -> Iterator[Limits]:

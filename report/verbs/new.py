@@ -15,9 +15,7 @@ METHODS = Path(__file__).resolve().parents[2] / "templates" / "methods"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("folder", metavar="FOLDER", type=named)
-    said = (
-        "the method: soft_impact (default); blank, formula, line, fit or root, to begin one's own; or a file"
-    )
+    said = "the method: soft_impact (default); blank, formula, linefit, root or fit for one's own; or a file"
     parser.add_argument("--workbook", metavar="NAME", default="soft_impact", help=said)
     parser.add_argument(
         "--ci", metavar="SERVICE", default="", help="also write what makes it check every change: github"
