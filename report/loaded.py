@@ -16,6 +16,7 @@ from .cells.address import index_text
 from .cells.values import CODES
 from .column import Column
 from .inputs.folders import report_folder
+from .messages.errors import LoopsheetError
 from .quantity import behind
 from .result.findings import checks
 from .study import Study
@@ -201,7 +202,10 @@ def load(folder: str | Path) -> Loaded:
     >>> paper["alpha_mean"].texts, paper["alpha"].index[0], round(float(paper["alpha_mean"].u), 4)
     (('1.3026',), '1-2', 0.0035)
     """
-    return Loaded(Study(report_folder(str(folder))))
+    try:
+        return Loaded(Study(report_folder(str(folder))))
+    except LoopsheetError as error:
+        raise error.with_traceback(None) from None  # what is wrong is in the folder, not on the way there
 
 
 def _table(quantities: list[Estimates]) -> str:

@@ -208,6 +208,11 @@ def _hint(error: BaseException) -> str:
             return "what is declared has a line of its own, and a name that stands for it in formulas"
         case TypeError() if "not callable" in str(error):
             return "is there a * missing before a parenthesis?"
+        case TypeError() if "not subscriptable" in str(error):
+            return (
+                "a formula names no single row or group: give rows a column of 1 and 0, stated exact, "
+                "and take sum(w * is_spiked)"
+            )
         case TypeError() | AttributeError() if re.search("symbol|Indexed|Symbol", str(error)):
             return "a name stands for a cell in formulas: no number yet, and no list; mean(x) is its mean"
     return "" if isinstance(error, SyntaxError) else _HINT

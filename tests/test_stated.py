@@ -312,6 +312,18 @@ def test_what_is_wrong_is_told_where_it_stands(read: Read, section: str, code: s
     assert (at.source or "")[(at.column or 1) - 1 :][: at.length] == culprit
 
 
+def test_of_correlations_those_that_clash_are_named(tmp_path: Path) -> None:
+    """The correlation of d with another clashes with none."""
+    lines = "".join(f'    {name} = given("1", "{name}")\n' for name in "abcd")
+    code = f"from loopsheet import Method, given, let\nclass Four(Method):\n{lines}"
+    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0"\n' for n in "abcd")
+    toml += '[uncertainty.correlation]\n"a, b" = "0.9"\n"b, c" = "0.9"\n"a, c" = "-0.9"\n"a, d" = "0.1"\n'
+    (tmp_path / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    with pytest.raises(InputError, match="these correlations of a, b and c cannot hold together"):
+        load(tmp_path, find_workbook)
+
+
 def test_a_column_of_uncertainties_and_parentheses_are_one_too_many(read: Read) -> None:
     csv = "test,v [m/s],e [1],x_p [um],u(x_p) [um]\n1,2.334,0.530,23.5,0.1\n2,2.940,0.512,29.7(2),0\n"
     with pytest.raises(InputError) as refused:

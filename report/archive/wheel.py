@@ -51,6 +51,7 @@ def _names() -> list[str]:
     """What a wheel holds, below the package: what computes a report, and the shipped campaigns."""
     found = {file for places in PARTS.values() for place in places for file in files(ROOT / place)}
     found |= {file for file in (ROOT / _DATA).glob("*/*") if file.is_file()}
+    found.add(ROOT / "py.typed")
     return sorted(file.relative_to(ROOT).as_posix() for file in found)
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["read_parameters", "wrong_type"]
 
 # An exponent is never given back: 8.366e-3 g is no 8.366 of a unit "e-3 g".
+_STATED = re.compile(r"\s(exact|[uUs]\s*=.*|(?:\+-|±).*)$")
+"""Behind a unit, without the comma."""
 _SPACELESS = re.compile(
     r"(?P<number>[+-]?[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?+)(?P<unit>[^\W\d_].*|[°%].*)", re.DOTALL
 )
@@ -159,6 +161,11 @@ class _Reader:
 
     def unit(self, text: str, start: int, digits: str) -> ParsedUnit | None:
         """Read the unit; None, with a finding, if it is not one of the right dimension."""
+        if joined := _STATED.search(text):
+            at, known = self.part(start, len(text)), examples(self.expected)
+            hint = f"a comma stands before what is stated: ', {joined[1]}'"
+            self.findings.add("LS421", at, text=text, suggestion=hint, known=known)
+            return None
         try:
             size = parse_unit(text or "1")
         except UnitError as error:

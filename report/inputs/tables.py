@@ -79,7 +79,9 @@ class TomlTables:
         path = (*table, key)
         value = data[key]
         if not isinstance(value, str):
-            wrong_type(self.toml, self.findings, path, "text in quotes", line)
+            several = key == "file" and isinstance(value, list)
+            more = ": the rows of several files go into one" if several else ""
+            wrong_type(self.toml, self.findings, path, f"text in quotes{more}", line)
             return None
         control = re.search("[\x00-\x1f\x7f-\x9f\u2028\u2029\ufffe\uffff]", value)
         if control:

@@ -26,6 +26,8 @@ _SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _ERROR = re.compile(
     r"(?P<reason>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", re.S
 )
+_TWICE = re.compile(r"Cannot declare \((.*)\) twice")
+_NAME = r"'([^']*)'"
 _PLAIN = re.compile(r"\"[^\"\\\n]*\"|'[^'\n]*'")
 
 _MOST_DOTS = 200
@@ -92,6 +94,8 @@ def read_toml(source: Source, findings: Findings) -> TomlFile | None:
         elif not match:
             at = Location(source.path)
         reason = match["reason"] if match else str(error)
+        if twice := _TWICE.fullmatch(reason):
+            reason = f"the table [{'.'.join(re.findall(_NAME, twice[1]))}] is there twice"
         findings.add("LS201", at, reason=reason[:1].lower() + reason[1:], suggestion=_advice(at))
     return None
 
@@ -104,6 +108,8 @@ def _place(source: Source, line: int, column: int) -> Location:
 
 def _advice(at: Location) -> str:
     line = (at.source or "").strip()
+    if re.fullmatch(r"\[[^\[\]]+\]\s*(#.*)?", line):
+        return "one table has all of its lines: put those of this one below the first"
     if re.match(r"\[[^\]]*(#.*)?$", line):
         return "close the name of the table: " + re.split(r"\s|#", line)[0] + "]"
     if re.match(r"[A-Za-z_]\w*\s*=\s*[^\s\"'\[{\dtfin+-]", line):

@@ -19,7 +19,7 @@ groups = [[1, 2], [3, 4]]                # or the same in the tests of a group, 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -372,13 +372,19 @@ class _Reader:
         """Coefficients if they can hold together: then no combination has a negative variance."""
         names = sorted({name for pair in found for name in pair})
         coefficients = {frozenset(pair): Fraction(r) for pair, r in found.items()}
-        matrix = [
-            [Fraction(1) if a == b else coefficients.get(frozenset((a, b)), Fraction(0)) for b in names]
-            for a in names
-        ]
-        if _is_covariance(matrix):
+
+        def hold(names: Sequence[str]) -> bool:
+            return _is_covariance([
+                [Fraction(1) if a == b else coefficients.get(frozenset((a, b)), Fraction(0)) for b in names]
+                for a in names
+            ])  # fmt: skip
+
+        if hold(names):
             return found
-        reason = f"these correlations of {listing(names)} cannot hold together"
+        for name in names.copy():  # those alone without which the others could
+            if not hold(others := [each for each in names if each != name]):
+                names = others
+        reason = f"these correlations of {listing(names, last='and')} cannot hold together"
         self.findings.add("LS434", self.toml.key(SECTION, "correlation"), reason=reason, suggestion="")
         return {}
 
