@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from .sheet import Axis, Column, Formula, Sheet
+from .sheet import Axis, Column, Formula, Sheet, SheetError
 
 if TYPE_CHECKING:
     from sympy import Expr
 
 __all__ = [
     "BARS", "BLUE", "INK", "IN_A_ROW", "MOST_DOTS", "MOST_GROUPS", "MOST_PANELS", "STYLES", "VERMILION",
-    "Chart", "Drawn", "Series", "copied", "drawn", "shade", "with_copies",
+    "Chart", "Drawn", "Series", "copied", "drawn", "series_of", "shade", "with_copies",
 ]  # fmt: skip
 
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
@@ -129,6 +129,17 @@ def with_copies(own: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
             found[name] = drawn(name, axis, value, column.unit, meaning, display=f"like {column.name}")
     thinned = tuple(name for name, column in found.items() if column.axis not in whole)
     return Drawn((*own.columns, *found.values()), own.given, thinned)
+
+
+def series_of(x: Column, y: Column) -> Series:
+    """Points of two columns, or a line where they are generated."""
+    if x.axis is None or x.axis != y.axis:
+        raise SheetError(f"{x.name} and {y.name} are no columns of the same rows", y.name)
+    if not x.axis.ordinals:
+        return Series(x.name, y.name, y.meaning, "points", bars=True)
+    if not x.axis.repeats:
+        return Series(x.name, y.name, y.meaning)
+    return Series(x.name, y.name, f"{y.meaning}, %s", each=True)
 
 
 def shade(part: float) -> str:

@@ -13,7 +13,6 @@ sympy: what is measured for the cell of a row, what is computed for a row if its
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -25,7 +24,8 @@ from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, Stri
 
 from ..derivations.reductions import Median
 from . import method_algebra
-from .charts import BLUE, VERMILION, Chart, Series
+from .charts import BLUE, VERMILION, Chart, Series, series_of
+from .codata import adjusted
 from .column import Column, SheetError
 from .messages.errors import listing
 from .method_body import MethodBody
@@ -58,14 +58,6 @@ __all__ = [
     "total",
     "unknown",
 ]
-
-_CODATA = {
-    **{"R": "molar gas constant", "N_A": "Avogadro constant", "F": "Faraday constant"},
-    **{"k": "Boltzmann constant", "k_B": "Boltzmann constant", "h": "Planck constant"},
-    **{"c": "speed of light in vacuum", "e": "elementary charge", "g": "standard acceleration of gravity"},
-    **{"G": "Newtonian constant of gravitation", "sigma": "Stefan-Boltzmann constant"},
-}
-"""What constants are called whose letters everybody writes."""
 
 
 @told_together
@@ -131,16 +123,7 @@ def constant(name: str, *, latex: str = "") -> Any:
     SheetError
         There is none of that name.
     """
-    from scipy.constants import find, physical_constants
-
-    if name not in physical_constants:
-        if name in _CODATA:
-            raise SheetError(f"CODATA calls {name} {_CODATA[name]!r}", name)
-        near = dict.fromkeys((*find(name), *difflib.get_close_matches(name, physical_constants, 3)))
-        meant = f"; do you mean {listing(list(near)[:5])}?" if near else ""
-        raise SheetError(f"CODATA has no {name!r}{meant}", name)
-    value, words, u = physical_constants[name]
-    unit = "*".join(words.split()) or "1"
+    value, unit, u = adjusted(name)
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
     bounds = _bounds(None, None, value > 0, False)
@@ -547,10 +530,10 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     for each in (across, up):
         if each.axis is None:
             raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
-    series = [_series(across, up)]
+    series = [series_of(across, up)]
     for curve, colour in zip(curves, itertools.cycle((VERMILION, BLUE)), strict=False):
         if isinstance(curve, tuple):
-            series.append(replace(_series(*named(*curve)), colour=colour))
+            series.append(replace(series_of(*named(*curve)), colour=colour))
         else:
             (column,) = named(curve)
             style = "level" if column.axis is None else "line"
@@ -559,17 +542,6 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     caption = caption or f"{sentence_case(said)}."
     body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
-
-
-def _series(x: Column, y: Column) -> Series:
-    """Points of two columns, or a line where they are generated."""
-    if x.axis is None or x.axis != y.axis:
-        raise SheetError(f"{x.name} and {y.name} are no columns of the same rows", y.name)
-    if not x.axis.ordinals:
-        return Series(x.name, y.name, y.meaning, "points", bars=True)
-    if not x.axis.repeats:
-        return Series(x.name, y.name, y.meaning)
-    return Series(x.name, y.name, f"{y.meaning}, %s", each=True)
 
 
 @told_together
