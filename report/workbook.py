@@ -142,6 +142,8 @@ class SquareSum:
     asked: bool = True
     """Whether data are odd if chance does not make it so: not where models are compared of which one holds at
     most."""
+    deviation: str = ""
+    """The column of how far each row lies off, in standard deviations."""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import openpyxl
 import pytest
 from campaign_sizes import Sizes
@@ -17,8 +18,10 @@ from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
 from loopsheet.report import stages
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
+from loopsheet.report.judge.suspects import outliers
 from loopsheet.report.messages.diagnostics import Check
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.result.chi_square import SIGNIFICANT, freedom, largest
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.verbs import common
@@ -102,6 +105,43 @@ def test_deviations_are_neither_larger_nor_smaller_than_chance_makes_them(
     assert [line.partition(":")[0] for line in told(write(tmp_path, SOUND, expected + stated(part)))] == [
         "expected"
     ]
+
+
+def test_a_bad_test_is_told_alone_with_what_is_left_without_it(tmp_path: Path) -> None:
+    """It pulls the curve so far that tests beside it lie off by more than chance leads: these are sound."""
+    depths = list(SOUND["x_p"])
+    depths[4] = "52.00"
+    folder = write(tmp_path, {**SOUND, "x_p": tuple(depths)}, stated())
+    report = computed(folder)
+    (outlier,) = outliers(report, report.workbook.squares[0])
+    off = np.abs(report.values.value["z_eiv"])
+    assert sum(largest(float(each), 6) < SIGNIFICANT for each in off) > 1
+    assert (outlier.test, outlier.among, outlier.deviation) == (5, 6, off.max())
+    assert outlier.chance == largest(float(off.max()), 6)
+    message = checks(folder)["squares chi2_eiv"].message
+    assert re.findall(r"(?:without|then) test (\d)", message) == ["5"]
+    table = (folder / "measurements.csv").read_text().splitlines()
+    table = [
+        f"{line},{'left out' if not n else 'bounced twice' if n == 5 else ''}" for n, line in enumerate(table)
+    ]
+    (folder / "measurements.csv").write_text("\n".join([*table, ""]))
+    again = computed(folder)
+    assert outlier.chi2 == pytest.approx(again.values.scalar("chi2_eiv"), rel=1e-9)
+    assert outlier.dof == freedom(again.workbook.squares[0], again) == 3
+    # Whoever looks for another one then has had as many tries as there are pairs.
+    assert not outliers(again, again.workbook.squares[0])
+    assert checks(folder)["squares chi2_eiv"].message.endswith("which is what chance makes")
+
+
+def test_a_second_bad_test_is_looked_for_without_the_first(tmp_path: Path) -> None:
+    depths = list(SOUND["x_p"])
+    depths[4], depths[1] = "52.00", "29.00"
+    report = computed(write(tmp_path, {**SOUND, "x_p": tuple(depths)}, stated()))
+    first, second = outliers(report, report.workbook.squares[0])
+    assert {first.test, second.test} == {2, 5}
+    assert second.chance == largest(second.deviation, 5, 1)
+    assert (first.dof, second.dof) == (3, 2)
+    assert second.chi2 < first.chi2 < report.values.scalar("chi2_eiv")
 
 
 @pytest.mark.parametrize(
@@ -207,7 +247,8 @@ def test_of_several_tests_that_may_be_wrong_the_one_that_moves_the_result_most(t
     """Only the pair of tests 4 and 5 is odd: both may be the cause."""
     texts = changed("e", 5, "0.469")
     *both, scattered = told(write(tmp_path, texts))
-    assert scattered == SCATTERED
+    without = "; without test 5 (farthest of 5, 27 standard deviations off: below 1e-15) it is 4.8 on 2: 0.09"
+    assert scattered == SCATTERED + without
     assert [said.partition(": alpha[4-5] = ")[0] for said in both] == [
         "warning: alpha: 1 of 10 pairs outside (4)",
         "warning: alpha: 1 of 10 pairs: e rises with the speed",

@@ -23,7 +23,7 @@ from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
 from .claims import CLAIM
-from .suspects import suspected
+from .suspects import outliers, suspected
 
 if TYPE_CHECKING:
     from ..inputs.expected import OfCell
@@ -348,7 +348,22 @@ class _Oddities:
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
         found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
-        return self.by_chance(cell, found, squares.axis, tail(cell.value, dof), head(cell.value, dof))
+        large, small = tail(cell.value, dof), head(cell.value, dof)
+        instead = self.without(squares) if large < RARE and squares.deviation else ""
+        return self.by_chance(cell, found, squares.axis, large, small, instead)
+
+    def without(self, squares: SquareSum) -> str:
+        """What is left of a sum of squares without the rows that lie off, as they were found one by one."""
+        found = outliers(self.report, squares)
+        told = ", then ".join(
+            f"{self.numbered([each.test])} (farthest of {each.among}, {rounded(each.deviation, 2).plain} "
+            f"standard deviations off: {probability(each.chance)})"
+            for each in found
+        )
+        left = (
+            f"{rounded(each.chi2, 2).plain} on {each.dof}: {probability(each.left)}" for each in found[-1:]
+        )
+        return "".join(f"; without {told} it is {each}" for each in left)
 
     def of_curve(self, curve: Curve) -> Check:
         """Whether the uncertainties of its rows make the residuals of a curve as large as they are."""

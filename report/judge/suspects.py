@@ -1,20 +1,24 @@
-"""Which test of a campaign to look at first, where rows that rest on several tests are odd."""
+"""Which test of a campaign to look at first, where rows that rest on several tests are odd, or a fit is."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..engines.numpy import evaluate
+from ..result.chi_square import SIGNIFICANT, largest, tail
 from ..result.numbers import at
-from ..sheet import Given, Sheet
+from ..sheet import Column, Given, Sheet
 
 if TYPE_CHECKING:
+    from ..cells.values import Values
     from ..result.result import Report
+    from ..workbook import SquareSum
 
-__all__ = ["suspected"]
+__all__ = ["Outlier", "outliers", "suspected"]
 
 Tests = tuple[int, ...]
 MOST_ALIKE = 3
@@ -56,18 +60,77 @@ def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
     column = next((one for one in headline if one.axis is None and report.sheet.summed_axes(one)), None)
     if column is None or (before := report.values.cell(column.name).value) is None:
         return 0, ""
-    sheet = Sheet((*report.sheet.ancestors(column), column))
-    data = {one.name: report.values.value[one.name] for one in sheet.columns if isinstance(one.rule, Given)}
-    own = report.inputs.tests
     # One draw for each suspect, in which its measured cells are missing: one evaluation for all.
-    without = np.array([[test == other for other in own] for test in tests])
-    for name in data.keys() & report.inputs.measured.keys():
-        data[name] = np.where(without, np.nan, data[name])
-    labels = {axis.name: own for axis in sheet.axes if axis.is_given}
-    after = evaluate(sheet, labels, data).value[column.name][:, 0]
+    without = np.array([[test == other for other in report.inputs.tests] for test in tests])
+    after = _without(report, [column], without).value[column.name][:, 0]
     moved = np.nan_to_num(np.abs(after - before))
     if np.count_nonzero(moved == moved.max()) > 1:
         return 0, ""
     row, how, (place,) = int(moved.argmax()), report.shown[column.name], report.places(column.name)
     was, now = (at(how.of(float(each)), place).text for each in (before, after[row]))
     return tests[row], f"without it {column.name} goes from {was} to {now}, further than without another"
+
+
+def _without(report: Report, columns: Collection[Column], without: Any) -> Values:
+    """Columns, and what they rest on, without the measured cells of some tests (..., tests)."""
+    needed = {own.name for column in columns for own in (*report.sheet.ancestors(column), column)}
+    sheet = Sheet(tuple(own for own in report.sheet.columns if own.name in needed))
+    data: Mapping[str, Any] = {
+        one.name: np.where(without, np.nan, own) if one.name in report.inputs.measured else own
+        for one in sheet.columns
+        if isinstance(one.rule, Given)
+        for own in [report.values.value[one.name]]
+    }
+    labels = {axis.name: report.inputs.tests for axis in sheet.axes if axis.is_given}
+    return evaluate(sheet, labels, data)
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """A test that lies farther off a fit than chance leads, and the fit without it and those before it."""
+
+    test: int
+    deviation: float
+    """In standard deviations of the fit that still has it."""
+    among: int
+    """Of how many tests it is the farthest."""
+    chance: float
+    """That the farthest of so many is so far off; every choice that was open is paid for."""
+    chi2: float
+    dof: int
+
+    @property
+    def left(self) -> float:
+        """The probability of so large a sum of squares without them."""
+        return tail(self.chi2, self.dof)
+
+
+def outliers(report: Report, squares: SquareSum) -> tuple[Outlier, ...]:
+    """The tests that lie off, one after another: the farthest is left out and all else fitted again.
+
+    One bad test pulls the curve, and makes others lie off as well: which do is seen without it alone.
+
+    Parameters
+    ----------
+    squares : SquareSum
+        Of the fit; with a column of deviations.
+    """
+    column, total, of = report.sheet[squares.deviation], report.sheet[squares.name], report.inputs
+    without, values, found = np.zeros(len(of.tests), dtype=bool), report.values, list[Outlier]()
+    while True:
+        deviations = np.abs(values.value[column.name])
+        there = np.isfinite(deviations)
+        among, gone = int(there.sum()), len(of.left_out) + len(found)
+        if among - 1 <= squares.fitted:
+            return tuple(found)
+        row = int(np.where(there, deviations, 0.0).argmax())
+        chance = largest(float(deviations[row]), among, gone)
+        if chance >= SIGNIFICANT:
+            return tuple(found)
+        without[row] = True
+        values = _without(report, [column, total], without)
+        chi2 = values.scalar(total.name)
+        if not np.isfinite(chi2):
+            return tuple(found)
+        far = float(deviations[row]), among, chance
+        found.append(Outlier(of.tests[row], *far, chi2, among - 1 - squares.fitted))

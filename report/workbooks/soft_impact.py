@@ -94,7 +94,7 @@ WORKBOOK = Workbook(
     parameters=PARAMETERS,
     check_parameters=_masses_given,
     sheet=_sheet,
-    squares=(SquareSum("chi2_eiv", axis="tests", fitted=2),),
+    squares=(SquareSum("chi2_eiv", axis="tests", fitted=2, deviation="z_eiv"),),
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
     headline=(
         *("alpha_eiv", "C_eiv", "chi2_eiv"),
