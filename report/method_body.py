@@ -69,6 +69,7 @@ class MethodBody(dict[str, Any]):
         self.announced: dict[str, UnknownLine] = {}
         self.bounds: dict[str, Bounds] = {}  # of parameters of fits, in SI
         self.constants: list[str] = []
+        self.margins: dict[str, str] = {}  # what has to be 0 or more, and the unit that it is shown in
         self.unnamed: list[Declaration | FitLine] = []
         self.aside: list[str] = []
         self.of_fits: dict[str, bool] = {}  # and whether it is a parameter
@@ -370,7 +371,10 @@ class MethodBody(dict[str, Any]):
     def _declared(self, name: str, said: Declaration) -> Column:
         """The column of a line."""
         if isinstance(said, ComputedLine):
-            return self._computed(name, said)
+            column = self._computed(name, said)
+            if said.is_margin:
+                self.margins[name] = shown_in(column, self.columns).text
+            return column
         if isinstance(said, PointsLine):
             return self._points(name, said)
         assert isinstance(said, InputLine)

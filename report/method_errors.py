@@ -15,7 +15,7 @@ from typing import Any, ParamSpec, TypeVar, cast
 from sympy import Basic, Symbol
 
 from .cells.units import check_column
-from .column import SheetError, shown_in
+from .column import SheetError
 from .method_body import MethodBody
 from .method_lines import ComputedLine
 
@@ -44,8 +44,6 @@ class WatchedBody(MethodBody):
         super().__init__(rows, index, size)
         self.wrong: dict[int, Exception] = {}
         """By line, in the order in which they stand; of a line the first alone."""
-        self.margins: dict[str, str] = {}
-        """The names of what has to be 0 or more, and the units that they are shown in."""
 
     def failed(self, error: Exception, line: int) -> Any:
         """Remember an error; what stands for what the line declares."""
@@ -80,8 +78,6 @@ class WatchedBody(MethodBody):
             super().__setitem__(name, value)
             if isinstance(value, ComputedLine):
                 check_column(self.columns, self.columns[name])
-                if value.is_margin:
-                    self.margins[name] = shown_in(self.columns[name], self.columns).text
         except SheetError as error:
             failed = self.failed(error, sys._getframe(1).f_lineno)
             self.unnamed = [said for said in self.unnamed if said is not value]

@@ -9,7 +9,7 @@ from ..derivations.equation import Ledger
 from ..derivations.vocabulary import Quantity, Vocabulary, spelt
 from .charts import Drawn
 from .column import Column, SheetError
-from .method_errors import WatchedBody
+from .method_body import MethodBody
 from .method_lines import Declaration
 from .quantity import Bounds
 from .sheet import Sheet
@@ -33,7 +33,7 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     return Quantity(*own, bool(column.positive), "", *known)
 
 
-def workbook_of(name: str, body: WatchedBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
+def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
     """All that it declares.
 
     Parameters
