@@ -38,7 +38,7 @@ def test_hertz_is_calculated_as_on_paper() -> None:
 def test_an_equation_that_is_solved_has_its_root_in_it() -> None:
     told = _told(DATA / "kepler")["(1)"]
     root, eccentricity, same, mean = map(float, re.findall(r"\d+\.\d+", told))
-    assert told == rf"{root} - {eccentricity} \sin{{\left({same} \right)}} = {mean}"
+    assert told == rf"{root} - {eccentricity} \cdot \sin{{\left({same} \right)}} = {mean}"
     assert root - eccentricity * math.sin(root) == pytest.approx(mean, abs=1e-7)
 
 

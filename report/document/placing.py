@@ -16,7 +16,8 @@ from .parts import Placed
 __all__ = ["placed_in"]
 
 _BETWEEN = re.compile(
-    r"(?:(?<=[\d})])|(?<=\\pi))(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\ln|\\exp|\\sqrt|\\pi|\d)"
+    r"(?:(?<=[\d})])|(?<=\\pi))(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\sqrt|\\pi|\d|"
+    r"\\(?:ln|exp|sin|cos|tan|sinh|cosh|tanh|operatorname)\b)"
 )
 
 
