@@ -76,6 +76,8 @@ class TableSpec:
     """Its number; that of the source's table, where it corresponds to one."""
     words: tuple[tuple[str, ...], ...] = ()
     """Of a table without columns: what stands above these, and its rows, the same for all data."""
+    beside: tuple[str, tuple[tuple[str, str], ...]] = ("", ())
+    """Of scalars: what stands above one more column, and by their names what that says of each."""
 
 
 def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:

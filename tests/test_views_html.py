@@ -55,6 +55,18 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Report:
     return Study(folder).computed
 
 
+def test_one_table_says_which_estimate_to_trust_and_what_each_counts(report: Report) -> None:
+    table = Tables(Material(report)).data["estimates"]
+    (rows,) = table.groups
+    said = {row.cells[1][0].latex: row.cells[-1] for row in rows.rows}  # type: ignore[union-attr]
+    assert len(said) == 5
+    assert all(words for words in said.values())
+    (trusted,) = (symbol for symbol, (words,) in said.items() if "the one to trust" in str(words))
+    assert trusted == report.sheet["alpha_eiv"].latex
+    other = Tables(Material(report)).data["fit"]
+    assert len(other.columns) == len(table.columns) - 1
+
+
 def test_of_many_rows_the_first_are_shown_and_it_is_said(large: Report) -> None:
     page = html.render(large, {})
     tables = Tables(Material(large)).data

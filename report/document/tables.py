@@ -166,18 +166,20 @@ class Tables:
         return _table("chances", self.rich(title), made, [((), there)], look="list", wide=True)
 
     def _scalars(self, spec: TableSpec) -> Table:
+        over, told = spec.beside[0], dict(spec.beside[1])
         made = (
             _Made("quantity", lambda item: self._meaning(item.head), "words", 0.42),
             _Made("symbol", lambda item: Math(item.head.latex), "symbol"),
             _Made("value", lambda item: item, "number"),
             _Made("unit", lambda item: _unit(item.head.unit), "unitcell"),
             _Made("from", lambda item: _refers(item.head, ", ") or "given", "words"),
+            *([_Made(over, lambda item: told[item.head.name], "words", 0.3)] if told else []),
         )
         items = [self.material.item(name) for name in spec.columns]
         heads = [item.head for item in items]
         legend, limits = (*self.rich(spec.note), *self._known(heads)), self._limits(heads)
-        told: dict[str, Any] = {"number": spec.number, "look": "list", "legend": legend, "limits": limits}
-        return _table(spec.name, self.rich(spec.title), made, [((), items)], **told)
+        more: dict[str, Any] = {"number": spec.number, "look": "list", "legend": legend, "limits": limits}
+        return _table(spec.name, self.rich(spec.title), made, [((), items)], wide=bool(told), **more)
 
     def _meaning(self, head: Head) -> Inlines:
         return (head.name,) if head.meaning == head.name else self.rich(head.meaning)

@@ -183,6 +183,17 @@ WORKBOOK = Workbook(
             "Exponent of one curve for all tests, by five estimates",
             ("alpha_eiv", "alpha_mean", "alpha_median", "alpha_log", "alpha_lin"),
             number="L6",
+            beside=(
+                "what counts",
+                (
+                    ("alpha_eiv", "each test by what is known of it: the one to trust"),
+                    *(
+                        (name, "all pairs alike, whatever each tells")
+                        for name in ("alpha_mean", "alpha_median")
+                    ),
+                    *((name, "points made of all pairs alike") for name in ("alpha_log", "alpha_lin")),
+                ),
+            ),
         ),
     ),
     figures=(
