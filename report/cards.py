@@ -132,7 +132,8 @@ def drops_of(report: Report) -> Drops:
         alpha,
         C,
         _number(report, "beta"),
-        _number(report, "ball_diameter") / 2,
+        _number(report, "R_b") if "R_b" in report.sheet else _number(report, "ball_diameter") / 2,
+        "target_diameter" not in report.sheet,
         _number(report, "nu_1"),
     )
     if lacking:
@@ -252,7 +253,8 @@ def _assumed(code: ContactFormula, asked: Asked, drops: Drops) -> Iterator[str]:
     from .impacts.code import R, nu
 
     if R in asked.symbols(code) and asked.R is None:
-        yield f"the effective radius is that of the ball, {drops.radius:g} m: the target is flat"
+        of = "of the ball, {:g} m: the target is flat" if drops.flat else "of two balls, {:g} m"
+        yield "the effective radius is that " + of.format(drops.radius)
     if nu in asked.symbols(code) and (said := asked.poisson(drops)[1]):
         yield said
 

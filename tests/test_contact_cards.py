@@ -137,6 +137,19 @@ def test_codes_have_poisson_s_ratio_of_the_ball(tmp_path: Path, capsys: pytest.C
     assert "Poisson's ratio is that of the ball: 0.25" in capsys.readouterr().out
 
 
+def test_codes_have_the_effective_radius_of_two_balls(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "own"
+    shutil.copytree(SHIPPED, folder)
+    with (folder / "report.toml").open("r+", encoding="utf-8") as file:
+        toml = file.read().replace("[parameters]", '[parameters]\ntarget_diameter = "12.7 mm"', 1)
+        file.seek(0)
+        file.write(toml)
+    assert main(["card", str(folder), "--for", "lammps"]) in (0, 1)
+    assert "the effective radius is that of two balls, 0.003175 m" in capsys.readouterr().out
+
+
 ALUMINIUM = """title = "Aluminium plate, 20 mm ball"
 workbook = "contact_models"
 [parameters]

@@ -65,6 +65,7 @@ def test_what_contradicts_a_model_within_its_part_is_refused() -> None:
 def wrong() -> Iterator[tuple[str, Any]]:
     """The label of a claim, and what a slip of the pen makes of its last side."""
     for label, factors in {
+        "(L122)": (2,), "(L189)": (2, Rational(1, 2)),
         "(L126)": (2, Rational(3, 4)), "(L127)": (2, Rational(4, 5)), "(L132)": (2, Rational(4, 3)),
         "(L133)": (2, Rational(5, 2)), "(L134)": (2, Rational(4, 5)), "(L138)": (4, Rational(1, 2)),
         "(L139)": (2, Rational(1, 4)), "(L142)": (2, Rational(1, 2)), "(L143)": (2, Rational(1, 2)),
@@ -261,6 +262,15 @@ def test_a_recovery_that_is_the_whole_approach_is_told_with_its_inequality(tmp_p
     study = changed(tmp_path, "; ".join((*ALL[:4], "4.993,0.97,51.03")))
     told = study.computed.values.cell("x_p_power", (5,)).reason
     assert "e^2 is not below (alpha + 1)/(beta + 1)" in told
+
+
+def test_a_target_may_be_a_ball(tmp_path: Path) -> None:
+    """Of two equal balls that are free first yield comes at half of the speed that a plane has."""
+    plane = Study(SHIPPED).computed.values
+    ball = changed(tmp_path, target_diameter="12.7 mm", target_mass="8.36574048 g").computed.values
+    assert ball.scalar("R_b") == pytest.approx(12.7e-3 / 4, rel=1e-14)
+    assert ball.scalar("v_Y") == pytest.approx(plane.scalar("v_Y") / 2, rel=1e-9)
+    assert ball.scalar("m_red") == pytest.approx(plane.scalar("m_red") / 2, rel=1e-9)
 
 
 def test_what_the_paper_quotes_of_first_yield_is_consistent() -> None:

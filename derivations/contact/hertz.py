@@ -1,4 +1,4 @@
-"""Hertz's contact of a ball and a plane, and the elastic impact that follows from it.
+"""Hertz's contact of a ball and a plane or a ball, and the elastic impact that follows from it.
 
 Sources: H Hertz, Über die Berührung fester elastischer Körper, J. reine angew. Math. 92 (1881) 156-171;
 S Timoshenko, J N Goodier, Theory of Elasticity, 3rd ed. 1970, for the impact; K L Johnson, Contact Mechanics,
@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import Expr, Integer, Integral, Rational, beta, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, define
+from ..equation import Derivation, Equation, Kind, Step, define
 from ..vocabulary import Quantity, Vocabulary
 from .model import ContactModel
 from .quantities import SHARED
@@ -22,6 +22,7 @@ __all__ = [
     "half",
     "modulus",
     "radius",
+    "radius_of_two",
     "recovery",
     "returned_work",
     "stiffness",
@@ -38,6 +39,7 @@ OWN = (
 _WORDS = Vocabulary(*SHARED.values(), *OWN)
 v, e, m_red, x, d, F = SHARED.plain("v e m_red x d F")
 E_1, E_2, nu_1, nu_2, E_star, R, K = SHARED.plain("E_1 E_2 nu_1 nu_2 E_star R_b K")
+d_2, ratio, gap, off_axis = SHARED.plain("target_diameter d_ratio gap off_axis")
 r, a, a_u, p_0, delta, R_u, F_m = SHARED.plain("r a_c a_u p_0 delta R_u F_m")
 x_m, peak, t, e_H, x_p = _WORDS.plain("x_m_hertz F_m_hertz t_hertz e_hertz x_p_hertz")
 half, hertz = Rational(1, 2), Rational(3, 2)
@@ -75,7 +77,33 @@ with evaluate(False):
         "modulus of the contact",
         "both bodies give way",
     )
-    radius = define("(L122)", R, d / 2, "radius of the ball", "a ball on a plane")
+    diameters = define("", ratio, d / d_2, "ratio of the diameters")
+    flat = Equation("", (ratio, Integer(0)), "the target is a plane", Kind.LIMIT, "flat target")
+    gap_of_two = Equation(
+        "",
+        (gap, off_axis**2 / d + off_axis**2 / d_2),
+        "both bodies are balls, and the contact is small beside them",
+        Kind.ASSUMPTION,
+        "gap of two balls that touch",
+    )
+    gap_of_one = Equation(
+        "",
+        (gap, off_axis**2 / (2 * R)),
+        "a ball on a plane with the same gap",
+        Kind.DEFINITION,
+        "effective radius",
+    )
+    by_ratio = Equation(
+        "", (R, d / (2 + 2 * ratio)), "(L189) with that ratio", title="effective radius by diameters"
+    )
+    radius_of_two = Equation(
+        "(L189)",
+        (R, 1 / (2 / d + 2 / d_2)),
+        "the same gap at every distance from the axis",
+        title="effective radius of two balls",
+        defines=R,
+    )
+    radius = Equation("(L122)", (R, d / 2), "a ball on a plane", title="effective radius", defines=R)
     pressure = Equation(
         "(L123)",
         (p_0, 2 * E_star * a / (pi * R)),
@@ -170,7 +198,13 @@ with evaluate(False):
 
 CONTACT: tuple[Equation | Derivation, ...] = (
     modulus,
-    radius,
+    Derivation.of(radius_of_two, (gap_of_two, gap_of_one), (gap, R), "Let both gaps be the same."),
+    Derivation(
+        (
+            Step(by_ratio, (radius_of_two, diameters), (R, d), "Put the ratio of the diameters in."),
+            Step(radius, (by_ratio, flat), (R, ratio), "Let it be zero."),
+        )
+    ),
     pressure,
     contact,
     stiffness,

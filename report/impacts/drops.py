@@ -44,7 +44,9 @@ class Drops:
     """`alpha`, `C` and `beta`: the identified law (3): its loading curve and the exponent of unloading; NaN
     where there is none."""
     radius: float = math.nan
-    """Of the ball; NaN if it is not known."""
+    """The effective one; NaN if it is not known."""
+    flat: bool = True
+    """Whether that is the radius of the ball."""
     nu: float = math.nan
     """Poisson's ratio of the ball; NaN if it is not known."""
 

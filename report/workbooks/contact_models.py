@@ -36,6 +36,9 @@ PARAMETERS = (
     Parameter("E_2", "Pa", "Young's modulus of the target", _POSITIVE),
     Parameter("nu_2", "1", "Poisson's ratio of the target", POISSON),
     Parameter(
+        "target_diameter", "m", "diameter of the target, if it is a ball; left out, it is a plane", _POSITIVE
+    ),
+    Parameter(
         "sigma_Y", "Pa", "yield strength of the target; left out, nothing is told of first yield", _POSITIVE
     ),
 )
@@ -101,7 +104,15 @@ def _tables() -> Iterator[TableSpec]:
         "given",
         "Ball, target and settings",
         (
-            *("ball_diameter", "ball_density", "ball_mass", "target_mass", "m_red", "beta"),
+            *(
+                "ball_diameter",
+                "ball_density",
+                "ball_mass",
+                "target_diameter",
+                "target_mass",
+                "m_red",
+                "beta",
+            ),
             *("E_1", "nu_1", "E_2", "nu_2", "sigma_Y", "E_star", "R_b", "K"),
         ),
     )

@@ -24,6 +24,8 @@ __all__ = ["branches", "constants", "sheet"]
 
 _BODIES = ("E_1", "nu_1", "E_2", "nu_2")
 """What is given of both bodies besides their masses."""
+_BALL = "target_diameter"
+"""Of a target that is no plane."""
 _YIELD = "sigma_Y"
 """Only first yield asks for it."""
 _SHOWN = {"m": "like x_p", "Pa": "GPa", "s": "us"}
@@ -55,7 +57,10 @@ def sheet(given: frozenset[str]) -> Sheet:
     laid.call_all()
     for name in _BODIES:
         laid.give(name)
-    for equation in (hertz.modulus, hertz.radius, hertz.stiffness):
+    if _BALL in given:
+        laid.give(_BALL)
+    radius = hertz.radius_of_two if _BALL in given else hertz.radius
+    for equation in (hertz.modulus, radius, hertz.stiffness):
         laid.tell(equation)
     if _YIELD in given:
         laid.give(_YIELD)
