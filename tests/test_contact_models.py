@@ -27,9 +27,11 @@ from sympy import Expr, Rational, Symbol, beta, lambdify
 import loopsheet
 from loopsheet.derivations import soft_impact as paper
 from loopsheet.derivations.contact import checks, hertz, johnson, thornton
+from loopsheet.derivations.contact.hertz import HERTZ
 from loopsheet.derivations.contact.lankarani_1994 import LANKARANI_1994
 from loopsheet.derivations.contact.model import ContactModel
 from loopsheet.derivations.contact.models import LEDGER, MODELS
+from loopsheet.derivations.contact.power_law import POWER_LAW
 from loopsheet.derivations.equation import Derivation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
@@ -563,9 +565,18 @@ def test_thornton_s_closed_form_is_that_of_its_loop() -> None:
     assert 0 < share < 1
 
 
-def test_a_restitution_of_one_leaves_no_imprint() -> None:
-    where = numbers("steel") | {hertz.e: 1.0}
-    assert closed(LANKARANI_1994, LANKARANI_1994.predicts["x_p"], where) == 0
+@pytest.mark.parametrize("e", [0.0, 0.3, 0.999, 1.0])
+def test_law_3_has_its_limits(e: float) -> None:
+    """Of Hertz's exponent on both branches it is Lankarani's, which is Hertz's if all comes back."""
+    where = numbers("steel") | {hertz.e: e, paper.alpha: 1.5}
+    where[paper.C] = closed(HERTZ, hertz.K, where)
+    imprints = [closed(model, model.predicts["x_p"], where) for model in (POWER_LAW, LANKARANI_1994)]
+    x_m = closed(HERTZ, hertz.x_m, where)
+    assert imprints == pytest.approx([x_m * (1 - e**2)] * 2, rel=1e-12, abs=0)
+    if e > 0:
+        times = [closed(model, model.predicts["t"], where) for model in (POWER_LAW, LANKARANI_1994)]
+        assert times[0] == pytest.approx(times[1], rel=1e-14)
+        assert (times[1] == pytest.approx(closed(HERTZ, hertz.t, where), rel=1e-14)) is (e == 1)
 
 
 def test_exponents_by_restitutions_follow_from_synthetic_ones() -> None:
