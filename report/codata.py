@@ -18,8 +18,8 @@ _LETTERS = {
 """What constants are called whose letters everybody writes."""
 
 
-def adjusted(name: str) -> tuple[float, str, float]:
-    """The value of a constant, its unit and its standard uncertainty, 0 where it is exact.
+def adjusted(name: str) -> tuple[float, str, float, str]:
+    """The value of a constant, its unit, its standard uncertainty, 0 where it is exact, and its source.
 
     Raises
     ------
@@ -28,14 +28,17 @@ def adjusted(name: str) -> tuple[float, str, float]:
 
     Examples
     --------
-    >>> adjusted("speed of light in vacuum")
+    >>> adjusted("speed of light in vacuum")[:3]
     (299792458.0, 'm*s^-1', 0.0)
     """
+    from scipy import constants
     from scipy.constants import find, physical_constants
 
     if name in physical_constants:
         value, unit, u = physical_constants[name]
-        return value, "*".join(unit.split()) or "1", u
+        # With its year, where scipy says it.
+        source = getattr(getattr(constants, "_codata", None), "_current_codata", "CODATA")
+        return value, "*".join(unit.split()) or "1", u, source
     if name in _LETTERS:
         raise SheetError(f"CODATA calls {name} {_LETTERS[name]!r}", name)
     near = dict.fromkeys((*find(name), *difflib.get_close_matches(name, physical_constants, 3)))

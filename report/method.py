@@ -26,7 +26,7 @@ from ..derivations.reductions import Median
 from . import method_algebra
 from .charts import BLUE, VERMILION, Chart, Series, series_of
 from .codata import adjusted
-from .column import Column, SheetError
+from .column import Column, Given, SheetError
 from .messages.errors import listing
 from .method_body import MethodBody
 from .method_errors import CURRENT, WatchedBody, told_together
@@ -123,11 +123,11 @@ def constant(name: str, *, latex: str = "") -> Any:
     SheetError
         There is none of that name.
     """
-    value, unit, u = adjusted(name)
+    value, unit, u, source = adjusted(name)
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
     bounds = _bounds(None, None, value > 0, False)
-    return _said(InputLine(f"{name}, CODATA", unit, column, bounds, default, is_constant=True))
+    return _said(InputLine(f"{name}, {source}", unit, column, bounds, default, is_constant=True))
 
 
 @told_together
@@ -514,8 +514,8 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     x, y : Expr
         Columns over the rows.
     *curves : Expr
-        Computed columns, each drawn as a line in the order of x, or single numbers, each across all of it;
-        or pairs ``(x, y)`` that have points, or a line, of their own.
+        Further columns: what is measured as points, what is computed as a line in the order of x; single
+        numbers, each across all of it; or pairs ``(x, y)`` that have points, or a line, of their own.
     caption : str
         Below the figure; what its axes are, without.
     log : str
@@ -536,8 +536,9 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
             series.append(replace(series_of(*named(*curve)), colour=colour))
         else:
             (column,) = named(curve)
-            style = "level" if column.axis is None else "line"
-            series.append(Series(across.name, column.name, column.meaning, style, colour))
+            is_read = isinstance(column.rule, Given) and column.axis is not None
+            style = "points" if is_read else "level" if column.axis is None else "line"
+            series.append(Series(across.name, column.name, column.meaning, style, colour, bars=is_read))
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     caption = caption or f"{sentence_case(said)}."

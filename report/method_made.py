@@ -80,6 +80,7 @@ def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: 
         sheet=lambda names: Sheet(columns),
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
+        least=1,
         curves=tuple(body.curves),
         claims=tuple(body.claims),
         constants=frozenset(body.constants),

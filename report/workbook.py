@@ -223,6 +223,8 @@ class Workbook:
     """The cells that are the result, first in every view."""
     row: str = "test"
     """What a row of the table of measurements is called: its first line may say that in place of ``test``."""
+    least: int = 2
+    """How many of these it takes at least."""
     groups: tuple[str, ...] = ()
     """The columns of words that say which rows belong together."""
     squares: tuple[SquareSum, ...] = ()

@@ -212,6 +212,29 @@ def test_points_and_lines_are_declared(tmp_path: Path, chdir: Callable[[Path], N
     assert fit.whole
 
 
+def test_one_row_is_enough_for_a_formula(tmp_path: Path) -> None:
+    assert main(["new", str(tmp_path / "c"), "--workbook", "formula"]) == 0
+    (tmp_path / "c" / "measurements.csv").write_text("swing,T [s]\n1,2.001\n", encoding="utf-8")
+    assert float(load(tmp_path / "c")["g"]) == pytest.approx(4 * math.pi**2 * 0.994 / 2.001**2)
+
+
+def test_a_second_measured_column_is_points_with_bars() -> None:
+    class Two(Method):
+        """Two readings beside a line."""
+
+        x = measured("m", "place")
+        a = measured("N", "force of the first")
+        b = measured("N", "force of the second")
+        m = let((a + b) / 2, "mean of both")
+        plot(x, a, b, m)
+
+    (chart,) = Two.workbook.charts
+    assert [(each.y, each.style, each.bars) for each in chart.series] == [
+        ("a", "points", True), ("b", "points", True), ("m", "line", False),
+    ]  # fmt: skip
+    assert len({each.colour for each in chart.series}) == 3
+
+
 def test_a_column_of_choices_is_exact(tmp_path: Path) -> None:
     code = """\
 from loopsheet import Method, let, measured

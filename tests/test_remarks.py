@@ -56,6 +56,11 @@ def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None
     inputs = Study(gas.folder(tmp_path / "named", table=named)).inputs
     assert (inputs.tests, inputs.naming) == ((1, 2, 3), ("reading",))
     assert inputs.called(3) == "3 (R-3)"
+    shown = Tables(Material(Study(tmp_path / "named").computed)).data.values()
+    heads = [[column.head for column in each.columns] for each in shown]
+    heads = [each for each in heads if ("reading",) in each]
+    assert all(each[:2] == [("no.",), ("reading",)] for each in heads)
+    assert heads
     loaded = loopsheet.load(tmp_path / "named")
     assert loaded["T"].names == ("1 (R-1)", "2 (R-2)", "3 (R-3)")
     unequal = named.replace("T [degC]", "T [degC],u(T) [degC]").replace("-3.2,", "-3.2,0.5,")

@@ -192,7 +192,7 @@ class Tables:
         inputs, measured = self.report.inputs, any(head.given for head in heads) and axis.is_given
         words = () if not axis.is_given else inputs.remarks if measured else inputs.naming
         names: Mapping[int, Mapping[str, str]] = inputs.rows
-        head = axis.row
+        head = "no." if axis.row in words else axis.row
         if isinstance(axis, GroupAxis):
             words, head = (axis.row,), "no."
             names = {n: {axis.row: word} for n, word in enumerate(inputs.words(axis.row), start=1)}

@@ -412,10 +412,11 @@ class _Reader:
         )
         if source is None:
             return None
-        of, row, groups = None, "test", tuple[str, ...]()
-        if self.workbook:
-            of, row, groups = self.workbook.measured, self.workbook.row, self.workbook.groups
-        found = read_measurements(source, of, modes, self.findings, wanted, row, groups)
+        if method := self.workbook:
+            said = method.measured, modes, self.findings, wanted, method.row, method.groups, method.least
+            found = read_measurements(source, *said)
+        else:
+            found = read_measurements(source, None, modes, self.findings, wanted)
         return found and self.take_columns(found, wanted)
 
     def take_columns(self, measurements: Measurements, wanted: Mapping[str, object]) -> Measurements | None:

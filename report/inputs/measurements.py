@@ -130,6 +130,7 @@ def read_measurements(
     elsewhere: Collection[str] = (),
     called: str = "test",
     groups: Collection[str] = (),
+    least: int = 2,
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -150,6 +151,8 @@ def read_measurements(
         What else the column of the tests' numbers may be called. Without it, rows are numbered as they stand.
     groups : collection of str
         The columns of words that say which rows belong together.
+    least : int
+        How many rows there must be.
     """
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
@@ -163,7 +166,7 @@ def read_measurements(
         return None  # its rows may be called as the workbook says, which is not known
     tests, reasons = reading.tests(), reading.fields(LEFT_OUT)
     gone = {place for place, reason in enumerate(reasons) if reason.text}
-    reading.count(len(gone))
+    reading.count(len(gone), least)
     near = reading.alike(tests)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
     values = reading.values(used, modes)
@@ -276,15 +279,16 @@ class _Reading:
                 lines[int(text)] = at.line
         return tuple(lines)
 
-    def count(self, gone: int) -> None:
-        """Refuse a table with less than two rows that are not left out."""
+    def count(self, gone: int, least: int) -> None:
+        """Refuse a table with too few rows that are not left out."""
         table = self.table
-        if (total := table.total - gone) >= 2:
+        if (total := table.total - gone) >= least:
             return
         said = f"no {self.called}" if total == 0 else f"one {self.called} only"
         at = table.at(table.rows[-1].fields[0]) if table.rows else table.end_of_header()
         said += " that is not left out" * bool(gone)
-        self.findings.add("LS310", at, count=said, row=self.called)
+        rows = "two rows" if least > 1 else "one row"
+        self.findings.add("LS310", at, count=said, least=rows, row=self.called)
 
     def alike(self, tests: Sequence[int]) -> tuple[Alike, ...]:
         """Words that may be others misspelt, of all columns of words by which rows belong together."""

@@ -186,7 +186,7 @@ CATALOGUE: dict[str, Entry] = {
         "export the table again as comma-separated values, with a decimal point",
     ),
     "LS309": Entry("no header", "the first line holds numbers instead of the names of columns", "{known}"),
-    "LS310": Entry("fewer than two tests", "the table has {count}", "at least two rows, one for each {row}"),
+    "LS310": Entry("too few tests", "the table has {count}", "at least {least}, one for each {row}"),
     "LS311": Entry(
         "doubled test number",
         "{name} {text} is there twice, first in line {first}",
