@@ -15,7 +15,7 @@ from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
 import loopsheet.report.method
-from loopsheet import Method, count, given, let, load, mean, measured, median, plot, root, total, unknown
+from loopsheet import Method, count, given, let, load, mean, measured, median, root, total, unknown
 from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
@@ -218,23 +218,6 @@ def test_one_row_is_enough_for_a_formula(tmp_path: Path) -> None:
     assert float(load(tmp_path / "c")["g"]) == pytest.approx(4 * math.pi**2 * 0.994 / 2.001**2)
 
 
-def test_a_second_measured_column_is_points_with_bars() -> None:
-    class Two(Method):
-        """Two readings beside a line."""
-
-        x = measured("m", "place")
-        a = measured("N", "force of the first")
-        b = measured("N", "force of the second")
-        m = let((a + b) / 2, "mean of both")
-        plot(x, a, b, m)
-
-    (chart,) = Two.workbook.charts
-    assert [(each.y, each.style, each.bars) for each in chart.series] == [
-        ("a", "points", True), ("b", "points", True), ("m", "line", False),
-    ]  # fmt: skip
-    assert len({each.colour for each in chart.series}) == 3
-
-
 def test_a_column_of_choices_is_exact(tmp_path: Path) -> None:
     code = """\
 from loopsheet import Method, let, measured
@@ -250,38 +233,6 @@ class Doses(Method):
     report = load(tmp_path)
     assert report["dose"].u.tolist() == [0, 0]
     assert report["y"].u == pytest.approx(report["gain"].u)
-
-
-def test_what_is_plotted() -> None:
-    class Cooling(Method):
-        """Cooling."""
-
-        t = measured("s", "time")
-        T = measured("K", "temperature")
-        T_mean = let(mean(T), "mean temperature")
-        later = let(T - T_mean, "temperature from the mean on")
-        plot(t, T, T_mean, later, caption="Cold.", log="x")
-
-    (chart,) = Cooling.workbook.charts
-    assert [(s.x, s.y, s.style) for s in chart.series] == [
-        ("t", "T", "points"),
-        ("t", "T_mean", "level"),
-        ("t", "later", "line"),
-    ]
-    assert (chart.log, Cooling.workbook.figures[0].caption) == ("x", "Cold.")
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("plot(x, x**2)", "a name of the body can be shown, no formula"),
-        ("plot(m, x)", "m is a single number, which is no column to plot"),
-    ],
-)
-def test_what_cannot_be_plotted(line: str, said: str) -> None:
-    body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    {line}\n"
-    with pytest.raises(SheetError, match=re.escape(said)):
-        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
 
 
 def test_sums_and_extremes_may_be_called_as_in_python() -> None:
