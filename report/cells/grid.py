@@ -28,6 +28,7 @@ __all__ = [
     "Place",
     "as_issued",
     "checked",
+    "every_row",
     "factors",
     "letters",
 ]
@@ -151,6 +152,11 @@ class Place:
         return "" if seen_from == self.worksheet else f"{quoted(self.worksheet)}!"
 
 
+def every_row(name: str) -> str:
+    """What all cells of a given column together are called, by which something is differentiated."""
+    return f"{name} of all rows"
+
+
 def quoted(worksheet: str) -> str:
     """A worksheet's name as formulas write it; in quotes if it could be read as something else.
 
@@ -266,6 +272,10 @@ class Grid:
     beside groups."""
     groups: Mapping[str, tuple[Grouped, ...]] = field(default_factory=dict)
     """By worksheet name; how rows that stand in groups are held to their words."""
+    slopes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    """By the name of a result, by that of what is given: the formula of its derivative in SI, without its
+    equals sign; of a given column with rows, by the cell of the row ``{row}``, and by :func:`every_row`.
+    Nothing where there is no formula."""
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

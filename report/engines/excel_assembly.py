@@ -39,6 +39,7 @@ from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
 from .excel_loops import passes_of
 from .excel_roots import Unrolled, unroll
+from .excel_slopes import slopes
 from .numpy_texts import program_texts
 
 __all__ = ["Assembly", "auxiliary_texts"]
@@ -131,6 +132,7 @@ class Assembly:
             "notes": as_data(self.notes),
             "words": as_data(self.words),
             "groups": as_data(self.groups),
+            "slopes": {name: slopes(formulas, self.sheet[name]) for name in self.first if name in self.sheet},
         }
 
     # --- places

@@ -19,7 +19,7 @@ from ..cells.grid import FilledDown, Grouped, Place, as_issued, checked
 from ..cells.layout import Layout, evenly
 from ..cells.values import CODES, Status
 from ..named import within
-from ..plan.nodes import Leaf, Map, Plan, RootNode
+from ..plan.nodes import Leaf, Map, Plan, RootNode, Total
 from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Iterated, MemberAxis, Reference, RepeatAxis, Sheet
@@ -28,7 +28,7 @@ from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
 from .excel_values import READY
 
-__all__ = ["Formulas", "Places", "carried", "carried_name", "guard"]
+__all__ = ["Formulas", "Places", "Writing", "carried", "carried_name", "guard"]
 
 _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
@@ -101,7 +101,7 @@ class Formulas:
 
     def checked(self, column: Column, guard: str, groups: Sequence[Grouped] = ()) -> tuple[FilledDown, ...]:
         """The formulas of what is given, if it is allowed and its row has its words, or else its code."""
-        writing = _Writing(self, column, column.name)
+        writing = Writing(self, column, column.name)
         cell = writing.fill(self.places.typed[column.name])
         same = [
             Grouped.same(writing.fill(own), writing.fill(group, np.array(rows)))
@@ -111,43 +111,43 @@ class Formulas:
 
     def column(self, column: Column, unrolled: Unrolled | None = None) -> tuple[FilledDown, ...]:
         """The formulas of a computed column, one a row."""
-        writing = _Writing(self, column, column.name, unrolled.plan if unrolled else None)
+        writing = Writing(self, column, column.name, unrolled.plan if unrolled else None)
         if isinstance(column.rule, Iterated):
             return writing.rows(writing.iterated())
         return writing.rows(writing.root(unrolled) if unrolled else writing.formula(self.maps[column.name]))
 
     def drawn(self, column: Column) -> tuple[FilledDown, ...]:
         """The formulas of a column for a chart: its values, or what charts leave out."""
-        writing = _Writing(self, column, column.name)
+        writing = Writing(self, column, column.name)
         return writing.rows(writing.drawn(self.maps[column.name]))
 
     def check(self, unrolled: Unrolled) -> tuple[FilledDown, ...]:
         """The formulas of the cell that says whether a root can be sought."""
-        writing = _Writing(self, unrolled.column, unrolled.check.name)
+        writing = Writing(self, unrolled.column, unrolled.check.name)
         return writing.rows(writing.inherited(f'"{READY}"'))
 
     def issued(self, name: str, column: Column, given: Sequence[str]) -> tuple[FilledDown, ...]:
         """The formulas of the cell that says whether given columns are as issued (1) or not (0)."""
-        writing = _Writing(self, column, name)
+        writing = Writing(self, column, name)
         pairs = [(self.places.columns[checked(one)], self.places.columns[as_issued(one)]) for one in given]
         return writing.rows(writing.same(pairs))
 
     def auxiliary(self, unrolled: Unrolled, cell: Auxiliary) -> tuple[FilledDown, ...]:
         """The formulas of a cell on the way to a root."""
-        writing = _Writing(self, unrolled.column, cell.name, unrolled.plan)
+        writing = Writing(self, unrolled.column, cell.name, unrolled.plan)
         return writing.rows(writing.auxiliary(unrolled, cell))
 
     def carried(self, cells: Leaf) -> tuple[FilledDown, ...]:
         """The formulas that repeat another axis' cells on this one."""
         assert cells.axis is not None
         stand_in = Column(carried_name(cells), cells.axis, Given())
-        writing = _Writing(self, stand_in, stand_in.name)
+        writing = Writing(self, stand_in, stand_in.name)
         which = self.layouts[cells.axis.name].rows[cells.index or ""]
         return writing.rows(writing.fill(self.places.columns[cells.name], which))
 
     def kept(self, column: Column) -> dict[str, str]:
         """For each axis that a column sums over, the formula that counts the rows with values."""
-        writing = _Writing(self, column, column.name)
+        writing = Writing(self, column, column.name)
         # Of groups there is a number for each, which stands in no single cell.
         axes = (axis for axis in self.sheet.summed_axes(column) if not isinstance(axis, MemberAxis))
         return {axis.name: f"={writing.number_kept(axis.name)}" for axis in axes}
@@ -168,11 +168,11 @@ def guard(bounds: Bounds) -> str:
     return f"IF(ISNUMBER({{0}}),{_all(['NOT(ISLOGICAL({0}))', *sorted(tests)])},FALSE())"
 
 
-class _Writing:
+class Writing:
     """The formulas of one quantity, being written: cells that change with the row are left open."""
 
     def __init__(self, formulas: Formulas, column: Column, name: str, plan: Plan | None = None) -> None:
-        self.plan = plan or formulas.plan
+        self.formulas, self.plan = formulas, plan or formulas.plan
         self.sheet, self.layouts, self.places = formulas.sheet, formulas.layouts, formulas.places
         self.column, self.axis = column, column.axis
         self.place = self.places.columns[name]
@@ -245,11 +245,23 @@ class _Writing:
         leaf = self.plan.named[symbol.name]
         if leaf.kind == "total":
             total = self.plan.totals[symbol.name]
-            return self.total(total.terms, total.over.name, total.word)
+            return self.summing(total.column.name).total(total.terms, total.over.name, total.word)
         if leaf.kind in ("kept", "size") and leaf.axis:
             axis = leaf.axis.name
-            return self.number_kept(axis) if leaf.kind == "kept" else f"ROWS({self.numbers(axis)})"
+            return (
+                self.summing(leaf.name).number_kept(axis)
+                if leaf.kind == "kept"
+                else f"ROWS({self.numbers(axis)})"
+            )
         return self.place_of(leaf).to_si(self.address(leaf, rows))
+
+    def summing(self, name: str) -> Writing:
+        """What writes the formulas of the column whose sums leave rows out, for a cell that stands here."""
+        if name == self.column.name:
+            return self
+        found = Writing(self.formulas, self.formulas.sheet[name], name)
+        found.here = self.here
+        return found
 
     def numbers(self, axis: str) -> str:
         """The range of numbers that name an axis' rows."""
@@ -321,6 +333,7 @@ class _Writing:
 
     @cached_property
     def printer(self) -> ExcelPrinter:
+        """What prints with these addresses."""
         return ExcelPrinter(self.symbol, self.total)
 
     def number(self, expression: Expr) -> str:
@@ -410,6 +423,28 @@ class _Writing:
                 gone = f"IF(ISNUMBER({other}),{gone},{other})"
         found = f"IF(ISNUMBER({last}),{found},{failed.replace('{}', gone)})"
         return f"IF(ISNUMBER({start}),{found},{start})"
+
+    def elsewhere(self, expression: Expr, in_sum: Mapping[Symbol, tuple[Total, bool]]) -> str:
+        """The formula of a number in SI, without its equals sign, for a cell of any other worksheet.
+
+        `in_sum`: what stands for whether a row counts in a sum, or for how many do.
+        """
+        self.here = ""
+
+        def symbol(each: Symbol, rows: bool = False) -> str:
+            if each not in in_sum:
+                return self.symbol(each, rows)
+            total, alone = in_sum[each]
+            summing = self.summing(total.column.name)
+            return summing.counts(total.over.name) if alone else summing.number_kept(total.over.name)
+
+        return str(ExcelPrinter(symbol, self.total).factor(expression))
+
+    def counts(self, axis: str) -> str:
+        """1 if a row of an axis, whose number is left open, has all values that are summed, else 0."""
+        summed = [self.place_of(leaf) for leaf, over in self.named if over and over.name == axis]
+        cells = (place.cell(0, self.here).removesuffix(str(place.row + 1)) for place in summed)
+        return f"IF({'*'.join(f'ISNUMBER({cell}{{row}})' for cell in cells)},1,0)"
 
     def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""

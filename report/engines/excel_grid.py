@@ -93,7 +93,7 @@ def grid(
     notes = of_data(told["notes"], dict[str, Place])
     beside = of_data(told["words"], dict[str, tuple[Place, ...]])
     groups = of_data(told["groups"], dict[str, tuple[Grouped, ...]])
-    return Grid(tuple(blocks), axes, drawn, notes, beside, groups)
+    return Grid(tuple(blocks), axes, drawn, notes, beside, groups, told["slopes"])
 
 
 def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

@@ -1,9 +1,10 @@
 """The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
 
 Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
-How readings scatter and what is a share of a number follow those cells, too. Only sensitivities are numbers
-as issued, for a spreadsheet has no derivatives; so is what is told of a sum of errors that are not all
-normal, for it does not convolve. Where sources were edited it says what it takes.
+How readings scatter and what is a share of a number follow those cells, too, as do sensitivities through
+formulas and means; through roots and fits they are numbers as issued, for a spreadsheet has no derivatives.
+So is what is told of a sum of errors that are not all normal, for it does not convolve. Where sources were
+edited it says what it takes.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from ..cells.grid import CellBlock, Grid, checked
+from ..cells.grid import CellBlock, Grid, checked, every_row, factors
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
@@ -32,7 +33,7 @@ _COLUMNS = (
     ("standard uncertainty u", 15),
     ("distribution", 14),
     ("degrees of freedom", 12),
-    ("sensitivity, as issued", 15),
+    ("sensitivity", 15),
     ("contribution", 15),
     ("share of the variance", 12),
 )
@@ -40,6 +41,8 @@ _NONE = 1e-12
 """Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
+_LONGEST = 8000
+"""Characters of a formula; Excel takes 8192."""
 _DOF = '[>=1000000000]"∞";General'
 _BARS = {
     **{"type": "data_bar", "bar_color": "#E9B893"},
@@ -57,7 +60,9 @@ _FACTORS = {
 
 def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write the budgets of the results, one below the other."""
-    said = "Estimates follow the sheet; yellow cells may be changed. Sensitivities stay as issued."
+    said = "Estimates follow the sheet; yellow cells may be changed."
+    if not all(grid.slopes.get(budget.name) for budget in report.uncertain().budgets if budget.u > 0):
+        said += " Sensitivities that are numbers stay as issued."
     widths = (width for _, width in _COLUMNS)
     style.page(sheet, "uncertainty: where that of the results comes from", said, widths)
     row = 3
@@ -116,15 +121,36 @@ class _Written:
         if source.u:
             u = source.u / scale
             self.number(row, 3, size, u, number_format(report.sure(name, source.u)))
-            sheet.write_number(
-                row, 6, contribution / u, style("number", number_format(rounded(contribution / u, 4)))
-            )
+            form = style("number", number_format(rounded(contribution / u, 4)))
+            if slope := self.slope(source):
+                style.formula(sheet, row, 6, slope, contribution / u, form, array="(IF(" in slope)
+            else:
+                sheet.write_number(row, 6, contribution / u, form)
             form = number_format(rounded(contribution, 3))
             style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
             sheet.write_number(row, 7, contribution, style("input", number_format(rounded(contribution, 3))))
         formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
+
+    def slope(self, source: ErrorSource) -> str:
+        """The formula of the sensitivity to an error, if there is one: by all cells that it moves."""
+        by, (name, _, size), grid = self.grid.slopes.get(self.budget.name, {}), source.moves[0], self.grid
+        moved = {(own, row): u * size > 0 for own, row, u in source.moves}
+        if not all(own in by for own, _ in moved):
+            return ""
+        every = {(name, row) for row in range(grid[name].place.rows)}
+        if len(every) > 1 and moved.keys() == every and all(moved.values()):
+            told = by[every_row(name)]
+        else:
+            rows = (
+                (by[own].replace("{row}", str(grid[own].place.row + row + 1)), up)
+                for (own, row), up in moved.items()
+            )
+            terms = [f"{'+' if up else '-'}{text}" for text, up in rows]
+            told = f"({''.join(terms).removeprefix('+')})" if len(terms) > 1 else terms[0][1:]
+        unit = grid[name].place.scale / self.block.place.scale
+        return f"={told}{factors(unit)[0]}" if len(told) < _LONGEST else ""
 
     def number(self, row: int, column: int, formula: str, now: float, form: str) -> None:
         """A number that follows others; without a formula one that may be changed."""

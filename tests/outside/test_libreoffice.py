@@ -406,3 +406,79 @@ def test_uncertainties_of_an_edited_workbook_follow_its_readings(
         again, now, then = sizes[name]
         assert again == pytest.approx(now, rel=1e-9)
         assert now != pytest.approx(then, rel=1e-6) or name == "coverage factor k"
+
+
+CHAINED = """from sympy import sqrt
+
+from loopsheet import Method, given, let, mean, measured
+
+
+class Chained(Method, headline="Q whole spread"):
+    V = measured("mV", "a voltage", positive=True)
+    T = measured("K", "a temperature", positive=True)
+    h = given("mm", "a length", positive=True)
+    t = given("ms", "a time", positive=True)
+    V_0 = let(mean(V), "its mean")
+    G = let(sqrt(h) / t, "a gain")
+    Q = let(V_0**2 * G - V_0 * mean(V) * G / 3, "what is sought")
+    whole = let(Q / mean(T), "by kelvin")
+    spread = let(mean((V - V_0) ** 2), "what is not linear in readings")
+"""
+
+
+def test_sensitivities_of_an_edited_workbook_are_those_of_a_rebuild(
+    require: Callable[..., str], tmp_path: Path
+) -> None:
+    """Through formulas, means of some rows and units; those of squares over rows are numbers as issued."""
+
+    def delivered(name: str, first: float | str, length: float) -> spreadsheets.Delivered:
+        folder = tmp_path / name
+        folder.mkdir()
+        rows = [(first, 301.0), (52.0, 304.5), (47.5, 299.0), (50.25, 300.0)]
+        table = "".join(f"{n},{v},{t}\n" for n, (v, t) in enumerate(rows, 1))
+        (folder / "workbook.py").write_text(CHAINED, encoding="utf-8")
+        (folder / "d.csv").write_text(f"test,V [mV],T [K]\n{table}", encoding="utf-8")
+        (folder / "report.toml").write_text(
+            f'workbook = "workbook.py"\n[parameters]\nh = "{length} mm, u = 0.1"\nt = "2.50 ms, u = 0.02"\n'
+            '[measurements]\nfile = "d.csv"\n[uncertainty]\nV = "u = 0.5"\nT = "u = 0.2"\n'
+            '[uncertainty.shared.bath]\nof = "T"\nstated = "u = 0.3"\n',
+            encoding="utf-8",
+        )
+        return spreadsheets.deliver(folder)
+
+    before, after = delivered("before", 48.0, 4.0), delivered("after", 61.0, 9.0)
+    fewer = delivered("fewer", "", 4.0)
+    books = {
+        "after": before.edited({("V", 0): 61.0, ("h", 0): 9.0}),
+        "fewer": before.edited({("V", 0): None}),
+    }
+    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path / "office", books)
+    assert "stay as issued" in spreadsheets.cells_of(before.content)["uncertainty"]["A2"]
+    for name, rebuilt in (("after", after), ("fewer", fewer)):
+        again, expected = read[name]["uncertainty"], spreadsheets.cells_of(rebuilt.content)["uncertainty"]
+        found, then = budgets(again), budgets(expected)
+        seen = 0
+        for result in ("Q", "whole"):
+            assert then[result].keys() <= found[result].keys()
+            for source, (sensitivity, contribution) in then[result].items():
+                assert found[result][source] == pytest.approx((sensitivity, contribution), rel=1e-9)
+                seen += sensitivity != pytest.approx(budgets(stale(before))[result][source][0], rel=1e-3)
+        assert seen > 6
+
+
+def stale(book: spreadsheets.Delivered) -> dict[str, Any]:
+    """The budgets as they were delivered."""
+    return spreadsheets.cells_of(book.content)["uncertainty"]
+
+
+def budgets(cells: dict[str, Any]) -> dict[str, dict[str, tuple[float, float]]]:
+    """Sensitivity and contribution of every source, by result."""
+    found: dict[str, dict[str, tuple[float, float]]] = {}
+    last = max(int(at[1:]) for at in cells if at.startswith("A"))
+    for row in range(4, last + 1):
+        said = str(cells.get(f"A{row}", ""))
+        if str(cells.get(f"A{row + 1}", "")) == "source":
+            own = found.setdefault(re.split(r"[ :]", said)[0], {})
+        elif isinstance(cells.get(f"H{row}"), float | int):
+            own[said] = float(cells[f"G{row}"]), float(cells[f"H{row}"])
+    return found
