@@ -79,6 +79,7 @@ def test_what_a_typed_restitution_returns(cards: dict[str, Card]) -> None:
     assert {name: typed and round(typed, 4) for name, typed in found.items()} == {
         "adams": None,
         "chrono": 0.4199,
+        "damping-family": None,
         "drake": None,
         "exudyn": None,
         "exudyn-damped": 0.4535,
@@ -89,6 +90,12 @@ def test_what_a_typed_restitution_returns(cards: dict[str, Card]) -> None:
         "simbody": None,
         "yade": 0.4529,
     }
+
+
+def test_the_card_of_the_family_has_the_exact_damping_number(cards: dict[str, Card]) -> None:
+    typed = {value.word: value.value for value in cards["damping-family"].typed}
+    assert typed["c"] == pytest.approx(number_for(0.479), rel=1e-8)
+    assert [row.by_card for row in cards["damping-family"].rows] == pytest.approx([0.479] * 5, rel=1e-8)
 
 
 def test_an_imprint_is_the_measured_one_where_there_is_any(cards: dict[str, Card]) -> None:
