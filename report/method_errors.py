@@ -17,7 +17,7 @@ from sympy import Basic, Symbol
 from .cells.units import check_column
 from .column import SheetError
 from .method_body import MethodBody
-from .method_lines import ComputedLine
+from .method_lines import ComputedLine, PointsLine
 
 __all__ = ["CURRENT", "WatchedBody", "told_together"]
 
@@ -76,7 +76,7 @@ class WatchedBody(MethodBody):
     def __setitem__(self, name: str, value: Any) -> None:
         try:
             super().__setitem__(name, value)
-            if isinstance(value, ComputedLine):
+            if isinstance(value, ComputedLine | PointsLine):
                 check_column(self.columns, self.columns[name])
         except SheetError as error:
             failed = self.failed(error, sys._getframe(1).f_lineno)

@@ -81,6 +81,34 @@ def test_ends_are_parameters_and_how_many_where_rows_have_some_each(folder: Path
     assert 1e3 * values["z"][[0, -1]] == pytest.approx([0.5, 6.0], rel=1e-15)
 
 
+def test_points_of_a_temperature_and_what_is_taken_over_points(tmp_path: Path) -> None:
+    code = """
+from loopsheet import Method, given, let, mean, points
+
+class Beam(Method):
+    "Deflection of a cantilever."
+    F = given("N", "force")
+    L = given("m", "length", positive=True)
+    EI = given("N*m^2", "bending stiffness", positive=True)
+    x = points(0, L, "place", "mm", number=21)
+    t = points(0, 25, "temperature", "degC", number=6)
+    w = let(F * x**2 * (3 * L - x) / (6 * EI), "deflection", "mm")
+    d_max = let(max(w), "largest deflection", "mm")
+    d_mean = let(mean(w), "mean deflection", "mm")
+"""
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    (tmp_path / "report.toml").write_text(
+        'workbook = "workbook.py"\n[parameters]\nF = "12.0 N"\nL = "1.500 m"\nEI = "210 N*m^2"\n',
+        encoding="utf-8",
+    )
+    report, x = loopsheet.load(tmp_path), np.linspace(0, 1.5, 21)
+    w = 12e3 * x**2 * (4.5 - x) / (6 * 210)
+    assert report["t"].value == pytest.approx([0, 5, 10, 15, 20, 25], abs=1e-12)
+    assert report["w"].value == pytest.approx(w)
+    assert float(report["d_max"]) == pytest.approx(12e3 * 1.5**3 / (3 * 210))
+    assert float(report["d_mean"]) == pytest.approx(w.mean())
+
+
 def test_figures_have_them_and_no_table_does(folder: Path) -> None:
     workbook = Study(folder).computed.workbook
     (figure,) = workbook.figures
@@ -96,6 +124,7 @@ def test_figures_have_them_and_no_table_does(folder: Path) -> None:
     [
         ("a = points(0, h, 'of points')", "a: its ends are points themselves, of h_points"),
         ("a = points(0, 1, 'one', number=1)", "number is a whole number from 2 to 1000, not 1"),
+        ("a = points(0, top, 'another kind', 's')", "but the formula gives"),
         ("points(0, 1, 'nameless')", "'nameless' has no name"),
         ("plot(x, F, (h, F))", "h and F are no columns of the same rows"),
         ("a = let(h * z, 'both')", "one formula names h_points or z_points"),
