@@ -43,6 +43,20 @@ def test_it_says_which_are_the_results_and_in_which_unit_people_read_them(values
     assert "shown" not in values["cells"]["v"]
 
 
+def test_it_has_the_digits_that_every_view_shows(values: dict, report: Report) -> None:  # type: ignore[type-arg]
+    cells = values["cells"]
+    assert cells["x_p"]["text"] == ["23.5", "29.7", "41.6", "45.97", "51.03"]  # as printed, in um
+    assert cells["v"]["text"][0] == "2.334"
+    assert (cells["alpha_mean"]["text"], cells["C_eiv"]["text"]) == ("1.3026", "1.009e9")
+    for name in ("alpha", "x_m", "u_alpha_eiv"):
+        own = (
+            cells[name] if isinstance(cells[name]["text"], list) else {k: [v] for k, v in cells[name].items()}
+        )
+        every = list(report.values.cells(name))
+        shown = [report.text(cell).partition(" ")[0] for cell in every]
+        assert [text.replace("-", "\u2212") for text in own["text"]] == shown
+
+
 def test_rows_that_a_rule_makes_of_each_pair_are_counted_not_listed(values: dict) -> None:  # type: ignore[type-arg]
     F = dict(values["cells"]["F"])
     assert F.pop("rule").startswith("(L")

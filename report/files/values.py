@@ -100,6 +100,9 @@ class Column(Form, frozen=True, kw_only=True):
         The number of rows that are counted and not listed.
     value : number or null
         In SI, unrounded; null where there is none.
+    text : str or null
+        The same as people read it, in `shown`, with the digits that its uncertainty leaves; what was given as
+        it was printed.
     status : str
         ``ok`` or the code of an error; how many rows have each, where they are counted.
     reason : str or null
@@ -122,6 +125,7 @@ class Column(Form, frozen=True, kw_only=True):
     size: Annotated[int, Meta(ge=0)] | UnsetType = UNSET
     index: list[Row] | UnsetType = UNSET
     value: Cells | UnsetType = UNSET
+    text: Words | UnsetType = UNSET
     status: list[str] | dict[str, int] | str
     reason: Words | UnsetType = UNSET
     u: Cells | UnsetType = UNSET

@@ -114,8 +114,15 @@ def _column(report: Report, column: Column) -> form.Column:
         entry["rows"] = dict(report.values.counted[column.name])
     if marked := [_marked(count) for count in report.marks.behind(column) if count.number]:
         entry["marked"] = marked
+    printed = [each.text if each else None for each in report.printed(column.name)]
+    shown = printed or [each.plain if each else None for each in report.figures(column.name)]
     return form.Column(
-        unit=column.unit, rule=_rule(report, column), value=told(numbers), status=told(codes), **entry
+        unit=column.unit,
+        rule=_rule(report, column),
+        value=told(numbers),
+        text=told(shown),
+        status=told(codes),
+        **entry,
     )
 
 
