@@ -76,6 +76,14 @@ def test_all_ways_to_draw_tell_the_same(bench: Callable[[str], ModuleType]) -> N
         assert other.symmetric == pytest.approx(told[0].symmetric, rel=1e-12)
 
 
+def test_what_draws_take_is_told_part_by_part(bench: Callable[[str], ModuleType]) -> None:
+    measured = bench("bench_monte_carlo")
+    parts = measured.spent(measured.ways(20_000)[measured.ALL])
+    assert parts.keys() == {*measured.PARTS, measured.ALL}
+    whole = parts.pop(measured.ALL)
+    assert 0 < sum(parts.values()) <= whole
+
+
 def test_every_command_that_is_measured_is_one(bench: Callable[[str], ModuleType], tmp_path: Path) -> None:
     measured = bench("bench_build")
     assert measured.answers(tmp_path)["--help"]() > 0
