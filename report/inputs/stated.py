@@ -368,7 +368,7 @@ def _meant(
             raise wrong("LS431", "with two degrees of freedom or fewer there is no standard deviation")
         return Shape.STUDENT, _root(keys["dof"] / (keys["dof"] - 2))
     if name == "U" or shape is Shape.NORMAL:
-        return Shape.NORMAL, _coverage(keys, wrong)
+        return Shape.NORMAL, _coverage(keys, EXAMPLE if name else f"{text}, k = 2", wrong)
     if not name and shape is None:
         # Limits that an instrument's maker states say nothing of what is likelier within them (4.3.7).
         shape = bare if _LIMITS.match(text) else Shape.RECTANGULAR
@@ -379,10 +379,12 @@ def _meant(
     return shape, one
 
 
-def _coverage(keys: dict[str, Fraction], wrong: Callable[[str, str], StatementError]) -> Fraction:
-    """The coverage factor."""
+def _coverage(
+    keys: dict[str, Fraction], example: str, wrong: Callable[[str, str], StatementError]
+) -> Fraction:
+    """The coverage factor; a normal error has no ends that could tell it."""
     if ("k" in keys) == ("p" in keys):
-        raise wrong("LS431", f"say the coverage factor, once: {EXAMPLE}")
+        raise wrong("LS431", f"say the coverage factor, once: {example}")
     if "k" in keys:
         return keys["k"]
     if "dof" in keys:

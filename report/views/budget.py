@@ -13,7 +13,7 @@ from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
-from ..result.uncertain import Budget, Conformity, Contribution, Distributed, Together, draws_of
+from ..result.uncertain import TOLERANCE, Budget, Conformity, Contribution, Distributed, Together, draws_of
 from .blocks import Block, TextTable, printers
 
 __all__ = ["FORMATS", "notes", "number", "percent", "sentence"]
@@ -166,12 +166,13 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
 
 
 def _together(summed: Together) -> str:
-    """How much cells that share their inputs tell: ``the 10 cells of alpha tell as much as 4: ...``."""
+    """How much cells that share their inputs tell: ``the 10 cells of alpha tell as much as 4 ...``."""
     larger = [rounded(value, 2).text for value in summed.eigenvalues[: summed.rank]]
     less = summed.eigenvalues[summed.rank :]
     told = ", ".join(larger) + (f", then {rounded(less[0], 1).text} and less" if less else "")
     cells = f"the {len(summed.eigenvalues)} cells of {summed.name}"
-    return f"{cells} tell as much as {summed.rank}: the eigenvalues of their correlation are {told}"
+    rank = f"{summed.rank} at a tolerance of {TOLERANCE}"
+    return f"{cells} tell as much as {rank}: the eigenvalues of their correlation are {told}"
 
 
 def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iterator[str]:
