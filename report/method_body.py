@@ -292,7 +292,6 @@ class MethodBody(dict[str, Any]):
 
         Those are rows in which what one of them, or what is computed from them, asks for has no value; what
         rests on a sum cannot be asked. As a sum has one value, results that share it are of the same rows.
-        A fit has its own: what is read off a calibration line asks nothing of the standards.
         """
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
@@ -304,7 +303,7 @@ class MethodBody(dict[str, Any]):
 
         bound: list[set[str]] = []  # names of which those in one set rest on sums that they share
         for column in sheet.columns:
-            if (names := self._up_to_fits(sheet, column)) & sums:
+            if (names := self._together(sheet, column, sums)) & sums:
                 apart = [each for each in bound if not each & names & sums]
                 bound = [*apart, names.union(*(each for each in bound if each not in apart))]
 
@@ -319,11 +318,18 @@ class MethodBody(dict[str, Any]):
         whole = (replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
         return told_apart(whole, self.fits)
 
-    def _up_to_fits(self, sheet: Sheet, column: Column) -> set[str]:
-        """The names of a column and of what it rests on, without the results of another fit."""
-        fits = ({each.name for each in fit.columns} for fit in self.fits)
-        left = set[str]().union(*(names for names in fits if column.name not in names))
-        return {column.name, *(each.name for each in sheet.ancestors(column, without=left))}
+    def _together(self, sheet: Sheet, column: Column, sums: set[str]) -> set[str]:
+        """The names of a column and of what it rests on, up to where another result begins.
+
+        That is a fit, and for a fit, or a margin, all that is taken over rows: a blank that is subtracted
+        has its own rows, and whoever compares a result with a limit does not change it.
+        """
+        fits = [{each.name for each in fit.columns} for fit in self.fits]
+        own = next((names for names in fits if column.name in names), {column.name})
+        other = set[str]().union(*fits)
+        if own & (other | self.margins.keys()):
+            other |= sums
+        return {column.name, *(each.name for each in sheet.ancestors(column, without=other - own))}
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""

@@ -8,6 +8,7 @@ import pytest
 
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.names import join
+from loopsheet.report.document.notation import Notation, read
 from loopsheet.report.document.put_in import put_in
 from loopsheet.report.study import Study
 from loopsheet.report.views.html import render
@@ -26,11 +27,11 @@ def test_hertz_is_calculated_as_on_paper() -> None:
         "(1)": r"R_{c} = \frac{1}{2} \cdot 0.05 = 0.025\,\text{m}",
         "(2)": r"E_{c} = \frac{\left(2 \times 10^{10}\right)}{2 - 2 \cdot 0.3^{2}} = "
         r"1.09890 \times 10^{10}\,\text{Pa}",
-        "(3)": r"K = \frac{4}{3} \cdot \left(1.09890 \times 10^{10}\right) \cdot \sqrt{0.025} = "
+        "(3)": r"K = \frac{4}{3} \cdot \left(1.098901099 \times 10^{10}\right) \cdot \sqrt{0.025} = "
         r"2.31669 \times 10^{9}\,\text{N}/\text{m}^{3/2}",
-        "(4)": r"F = \left(2.31669 \times 10^{9}\right) \cdot 0.004^{1.5} = 586081\,\text{N}",
+        "(4)": r"F = 2316686931 \cdot 0.004^{1.5} = 586081\,\text{N}",
         "(5)": r"a = \sqrt{0.025 \cdot 0.004} = 0.01\,\text{m}",
-        "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586081}{\pi \cdot 0.01^{2}} = "
+        "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586080.5861}{\pi \cdot 0.01^{2}} = "
         r"-2.79833 \times 10^{9}\,\text{Pa}",
     }
 
@@ -49,6 +50,38 @@ def test_what_is_given_keeps_its_digits_and_what_is_negative_has_brackets() -> N
         r"(\left(1.15 \times 10^{-5}\right) \cdot 0 + 0 \cdot (0 + \left(-0.1\right))) = "
         r"0.050000838\,\text{m}"
     )
+
+
+def _calculated(part: Notation) -> str:
+    """What is typed into a calculator for it: an expression of Python."""
+    inside = [_calculated(each) for each in part.parts]
+    if part.kind == "fraction":
+        return f"(({inside[0]})/({inside[1]}))"
+    if part.kind == "scripts":
+        return f"({inside[0]})**({inside[2]})"
+    if part.kind == "root":
+        return f"sqrt({inside[0]})"
+    if part.kind == "fence":
+        return f"({''.join(inside)})"
+    if part.kind == "space":
+        return ""
+    signs = {"−": "-", "·": "*", "×": "*", "π": "pi", "ln": "log"}
+    return signs.get(part.text, part.text) + "".join(inside)
+
+
+@pytest.mark.parametrize("example", ["hertz", "meyer", "gum_h1", "gum_h2", "gum_h3", "misra1a"])
+def test_a_calculator_finds_what_comes_out(example: str) -> None:
+    known = {name: getattr(math, name) for name in ("sqrt", "log", "exp", "sin", "cos", "pi")}
+    shown = [each.sides for each in put_in(Material(Study(DATA / example).computed)) if len(each.sides) == 3]
+    assert shown
+    for symbol, put, found in shown:
+        text = _calculated(read(join(list(found)))).replace("**", "e")
+        digits = re.match(r"-?[\d.]+", text)
+        assert digits is not None
+        places = len(digits[0].partition(".")[2])
+        power = int(re.search(r"10\)e\((-?\d+)", text)[1]) if "10)e" in text else 0  # type: ignore[index]
+        value = eval(_calculated(read(join(list(put)))), dict(known))
+        assert f"{value / 10.0**power:.{places}f}" == digits[0], join(list(symbol))
 
 
 def test_what_only_renames_a_number_and_the_parts_of_a_fit_are_not_shown() -> None:

@@ -22,6 +22,8 @@ __all__ = ["put_in"]
 
 MOST = 40
 """Equations that are shown so; of rows there is the first that has a value."""
+DIGITS = 10
+"""Significant digits of a computed number that is put in."""
 LARGE = 1e6
 """What is given, from here on, has a power of ten."""
 _PLACE = re.compile(r"\\text\{@(\d+)@\}")
@@ -53,9 +55,9 @@ def _each(material: Material) -> Iterator[PutIn]:
             label = report.values.labels(column)[row]
             symbol = name_latex(column.name, material.names, ",".join(map(str, label)))
             value = float(report.values.value[column.name][row])
-            found = _written(_figure(report, column.name, row, value))
-            if sides in ([found], [_bracketed(found)]):
+            if len(sides) == 1 and sides[0] == _number(report, column.name, row, value):
                 continue  # one number, by another name
+            found = _written(_result(report, column.name, row, value))
             sides = [symbol, *sides, rf"{found}\,{_unit(column.unit)}" if column.unit != "1" else found]
         yield PutIn(sources[-1], tuple([(False, side)] for side in sides))
 
@@ -99,18 +101,22 @@ def _written(figure: Numeral) -> str:
 
 
 def _figure(report: Report, name: str, row: int, value: float) -> Numeral:
-    """A number in SI, with the digits that are known."""
-    if name and not isinstance(report.sheet[name].rule, Given):
-        known = report.uncertain().u
-        u = float(known[name][row]) if name in known else math.nan
-        return at(value, last_place(value, u, report.shown[name].digits, report.inputs.uncertainty.digits))
-    exact = Decimal(f"{value:.12g}").normalize()
-    figure = read(str(exact) if abs(value) >= LARGE else f"{value:.12g}")
+    """A number in SI with so many digits that what comes out comes out on a pocket calculator, too."""
+    is_given = not name or isinstance(report.sheet[name].rule, Given)
+    short = f"{value:.{DIGITS + 2 if is_given else DIGITS}g}"
+    figure = read(str(Decimal(short).normalize()) if abs(value) >= LARGE else short)
     assert figure is not None
     return figure
 
 
+def _result(report: Report, name: str, row: int, value: float) -> Numeral:
+    """What comes out in SI, with the digits that are known."""
+    known = report.uncertain().u
+    u = float(known[name][row]) if name in known else math.nan
+    return at(value, last_place(value, u, report.shown[name].digits, report.inputs.uncertainty.digits))
+
+
 def _unit(unit: str) -> str:
     """LaTeX of a unit of SI."""
-    powers = re.sub(r"\^\(?(-?[\w/.]+)\)?", r"^{\1}", unit.replace("*", r"\,"))
+    powers = re.sub(r"\^(?:\(([^()]+)\)|(-?\w+))", r"^{\1\2}", unit.replace("*", r"\,"))
     return re.sub(r"(?<![\\{\w-])[A-Za-z]+", lambda name: rf"\text{{{name.group()}}}", powers)
