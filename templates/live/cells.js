@@ -89,6 +89,11 @@ function isUnchanged(look, last, name, row, before) {
 }
 
 function writeCell(element, look, name, row) {
+  if (row < 0) { // of a group that has no row left
+    element.setAttribute("data-value", "");
+    writeInText(element, { text: "–", ok: false });
+    return;
+  }
   const cell = look.cell(name, row);
   const reason = cell.ok ? "" : look.trace.reason(name, row);
   const title = [reason || cell.beyond, cell.before && `as issued: ${cell.before}`].filter(Boolean).join("; ");

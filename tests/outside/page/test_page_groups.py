@@ -147,6 +147,29 @@ def test_a_result_of_each_group_has_its_word_and_follows(
     assert live.page.locator("#bar-name code").text_content() == f"b[{words[1]}]"
 
 
+def test_a_result_of_a_group_without_readings_is_a_dash_and_all_else_goes_on(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    code = grouped.METHOD.replace('headline="between within F R2 s apart"', 'headline="level"')
+    rows = tuple((*row, "") for row in grouped.FEW)
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],left out", code)
+    live = opened(folder, open_page)
+    shown = live.page.locator(".headline [data-cell]")
+    issued = shown.all_text_contents()
+    for reading in (5, 7):
+        live.page.locator(f'input[data-use="{reading}"]').uncheck()
+    assert shown.all_text_contents() == [*issued[:2], "–"]
+    live.type("y", 6, "2.85")
+    again = rebuilt(
+        folder, ("6,B,2.75", "6,B,2.85"), ("5,C,3.50,", "5,C,3.50,dropped"), ("7,C,3.25,", "7,C,3.25,dropped")
+    )
+    cells = [cell for cell in live.cells() if cell.name != "y" and cell.value]
+    assert driving.differences(cells, again) == []
+    for reading in (5, 7):
+        live.page.locator(f'input[data-use="{reading}"]').check()
+    assert shown.all_text_contents()[::2] == issued[::2]
+
+
 def test_an_edited_reading_moves_the_roots_of_its_group(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
