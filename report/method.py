@@ -24,7 +24,7 @@ from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, Stri
 
 from ..derivations.reductions import Median
 from . import method_algebra
-from .charts import BLUE, VERMILION, Chart, Series, series_of
+from .charts import COLOURS, Chart, Series, series_of
 from .codata import adjusted
 from .column import Column, Given, SheetError
 from .messages.errors import listing
@@ -531,7 +531,7 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
         if each.axis is None:
             raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
     series = [series_of(across, up)]
-    for curve, colour in zip(curves, itertools.cycle((VERMILION, BLUE)), strict=False):
+    for curve, colour in zip(curves, itertools.cycle(COLOURS), strict=False):
         if isinstance(curve, tuple):
             series.append(replace(series_of(*named(*curve)), colour=colour))
         else:

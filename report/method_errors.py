@@ -16,8 +16,9 @@ from sympy import Basic, Symbol
 
 from .cells.units import check_column
 from .column import SheetError
+from .messages.errors import suggest
 from .method_body import MethodBody
-from .method_lines import ComputedLine, PointsLine
+from .method_lines import ComputedLine, FitLine, PointsLine
 
 __all__ = ["CURRENT", "WatchedBody", "told_together"]
 
@@ -34,6 +35,10 @@ class _Failed(Symbol):  # type: ignore[misc]
         """What a fit would have."""
         if name.startswith(("_", "is_")):
             raise AttributeError(name)
+        return self
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """What ``np.mean`` would be called with."""
         return self
 
 
@@ -63,6 +68,12 @@ class WatchedBody(MethodBody):
         """The names of which nothing is known."""
         return {name for name, value in self.items() if any(_failed_in(value))}
 
+    def without_fit(self, *formulas: Any) -> None:
+        """Know nothing of the unknowns in formulas that a fit would have found, not even their units."""
+        named = {each for part in formulas if isinstance(part, Basic) for each in part.free_symbols}
+        for each in {str(symbol) for symbol in named} & self.announced.keys():
+            dict.__setitem__(self, each, _Failed("_"))
+
     def __missing__(self, name: str) -> Any:
         try:
             return told_together(super().__missing__(name))
@@ -71,9 +82,12 @@ class WatchedBody(MethodBody):
             beyond = name in around.f_globals or name in around.f_code.co_freevars or hasattr(builtins, name)
             if beyond or name.startswith("__"):
                 raise
-            return self.failed(NameError(f"name {name!r} is not defined", name=name), around.f_lineno)
+            near = suggest(name, [*self, *around.f_globals])
+            hint = f": {near}" if near else ""
+            return self.failed(NameError(f"name {name!r} is not defined{hint}", name=name), around.f_lineno)
 
     def __setitem__(self, name: str, value: Any) -> None:
+        is_new = name not in self
         try:
             super().__setitem__(name, value)
             if isinstance(value, ComputedLine | PointsLine):
@@ -81,8 +95,10 @@ class WatchedBody(MethodBody):
         except SheetError as error:
             failed = self.failed(error, sys._getframe(1).f_lineno)
             self.unnamed = [said for said in self.unnamed if said is not value]
-            if name not in self:
+            if is_new:
                 dict.__setitem__(self, name, failed)
+            if isinstance(value, FitLine):
+                self.without_fit(value.model)
 
 
 CURRENT: ContextVar[WatchedBody | None] = ContextVar("CURRENT", default=None)
@@ -98,6 +114,8 @@ def told_together(word: Callable[P, T]) -> Callable[P, T]:
         if body is None:
             return word(*arguments, **named)
         if any(_failed_in((arguments, named))):
+            if word.__name__ == "fit":
+                body.without_fit(*arguments, *named.values())
             return cast(T, _Failed("_"))
         try:
             return word(*arguments, **named)

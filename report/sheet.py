@@ -242,6 +242,11 @@ class Sheet:
             return tuple(axis for axis in self.axes if axis.name in column.mentioned.summed)
         return self.algebra.summed(column) if column.expressions else ()
 
+    def rows_of(self, axis: str) -> str:
+        """What the rows of an index set are called, those of groups once more as themselves."""
+        found = next(each for each in self.axes if each.name == axis)
+        return found.of.name if isinstance(found, MemberAxis) else axis
+
     def _read(self, column: Column) -> Iterator[Reference]:
         """The cells that a column names, in the order of declaration."""
         if column.mentioned is not None:

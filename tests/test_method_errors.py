@@ -82,6 +82,22 @@ b = let(a[1], "of it")
 """,
         {0: "must be a pure number"},
     ),
+    "what follows from a fit, a unit and a module that are not there": (
+        """\
+a = unknown("where it begins", "N")
+b = unknown("slope", "N/mm")
+z = let(y + x, "sum of two kinds")
+line = fit(z, a + b * x)
+straight = let(a + b * x, "line", "N")
+K_2 = let(K * x, "stiffness", "kg")
+F = let(K_2 * x, "force", "N")
+m = let(np.mean(x), "mean", "mm")
+u = let(log(x), "logarithm of a length")
+v = let(b0 + b_0, "of misspelt names")
+""",
+        {2: "cannot add", 5: "but the formula gives", 7: "'np' is not defined", 8: "must be a pure number",
+         9: "'b0' is not defined"},
+    ),
 }  # fmt: skip
 
 

@@ -204,7 +204,8 @@ class Said:
     def _result(self, item: Item) -> HeadlineItem:
         material, name = self.material, item.cell.name
         counted = self.report.values.counted.get(name, {}).items()
-        left_out = ((axis, rows, material.count(axis)) for axis, rows in counted)
+        called = self.report.sheet.rows_of
+        left_out = ((called(axis), rows, material.count(axis)) for axis, rows in counted)
         rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
         marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
         column = self.report.sheet[name]

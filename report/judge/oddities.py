@@ -229,10 +229,9 @@ class _Oddities:
         """Whether all sums, means and fits are over all rows."""
         found: dict[str, list[str]] = {}
         foreseen: dict[str, list[str]] = {}
-        members = {each.name: each.of.name for each in self.sheet.axes if isinstance(each, MemberAxis)}
         for name in self.first(self.values.counted):
             for axis, rows in self.values.counted[name].items():
-                over = f"over {rows} of {self.values.layouts[axis].size} {members.get(axis, axis)}"
+                over = f"over {rows} of {self.values.layouts[axis].size} {self.sheet.rows_of(axis)}"
                 cells = (cell for cell in self.values.cells(name) if cell.value is not None)
                 expected = [self.follows(cell, f"is {over}") for cell in cells]
                 if expected:

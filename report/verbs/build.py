@@ -118,7 +118,8 @@ def _line(report: Report, cell: Cell) -> str:
     if cell.value is None:
         return cell.reason
     rows = report.values.counted.get(name, {})
-    left = "".join(f"  (over {n} of {report.values.layouts[a].size} {a})" for a, n in rows.items())
+    sizes = ((n, report.values.layouts[axis].size, report.sheet.rows_of(axis)) for axis, n in rows.items())
+    left = "".join(f"  (over {n} of {size} {called})" for n, size, called in sizes)
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
     left += (mark := report.marks.of(name)[report.values.row(column, cell.label)]) and f"  {mark}"
     left += (doubt := report.uncertain().advice.get(cell.address, "")) and f"  ({doubt})"

@@ -109,10 +109,15 @@ function publishedMath(column, name, row) {
 function summedRows(name, row) {
   const { declared, sheet } = page.look.trace;
   return declared[name].sums.map((axis) => {
-    const { of, kind } = PROGRAM.axes.find((one) => one.name === axis), kept = sheet.kept[name].keep[axis];
-    const number = kept.slice(...summed(sheet.layouts[axis], row)).filter(Boolean).length;
-    return ` over ${number}\u00a0${kind === "members" ? of : axis}`;
+    const number = sheet.kept[name].keep[axis].slice(...summed(sheet.layouts[axis], row)).filter(Boolean).length;
+    return ` over ${number}\u00a0${rowsOf(axis)}`;
   }).join(",");
+}
+
+// What the rows of an index set are called, those of groups once more as themselves.
+function rowsOf(axis) {
+  const { of, kind } = PROGRAM.axes.find((one) => one.name === axis);
+  return kind === "members" ? of : axis;
 }
 
 // The equation with the values put in, in SI.

@@ -165,7 +165,7 @@ function writeCounted(look) {
     }
     for (const [axis, rows] of Object.entries(counted)) {
       const size = look.trace.sheet.layouts[axis].size;
-      if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${axis}`));
+      if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${rowsOf(axis)}`));
     }
     const behind = look.trace.ancestors(name);
     for (const { name, axis } of look.trace.order.filter(({ name, axis }) => axis && behind.has(name))) {
