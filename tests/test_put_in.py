@@ -13,6 +13,7 @@ from loopsheet.report.document.put_in import put_in
 from loopsheet.report.study import Study
 from loopsheet.report.views.html import render
 from loopsheet.report.views.latex import render as render_latex
+from loopsheet.report.views.why import why
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 
@@ -34,6 +35,13 @@ def test_hertz_is_calculated_as_on_paper() -> None:
         "(6)": r"\sigma = -\frac{3}{2} \cdot \frac{586080.5861}{\pi \cdot 0.01^{2}} = "
         r"-2.79833 \times 10^{9}\,\text{Pa}",
     }
+
+
+@pytest.mark.parametrize(("name", "cell", "label"), [("kepler", "E", (1,)), ("colebrook", "f", ())])
+def test_why_puts_the_root_itself_in(name: str, cell: str, label: tuple[int, ...]) -> None:
+    told = why(Study(DATA / name).report, cell, label)
+    (line,) = (line for line in told.splitlines() if line.startswith("  in SI"))
+    assert not re.search(rf"\b{cell}\b", line)
 
 
 def test_an_equation_that_is_solved_has_its_root_in_it() -> None:

@@ -73,7 +73,8 @@ def _files(report: Report) -> dict[str, Any]:
         name: data for name, data in report.inputs.files.items() if name not in ("report.toml", measurements)
     }
     return {
-        "file": _saved(measurements),
+        # Without a table report.toml is written in its place.
+        "file": _saved(measurements) if report.inputs.workbook.measured else "report.toml",
         "files": {_saved(name): data.decode("utf-8", "replace") for name, data in others.items()},
     }
 

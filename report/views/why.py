@@ -234,6 +234,8 @@ def _numbers(report: Report, column: Column, row: int) -> dict[Expr, Symbol]:
     values, axis = report.values, column.axis
     own = column.symbol if axis is None else column[axis.index]
     put: dict[Expr, Symbol] = {own: _stand_in(values.value[column.name][row])}
+    if isinstance(column.rule, Root) and column.rule.value == column.rule.unknown:
+        put[column.rule.unknown] = put[own]
     for reference, group in zip(report.sheet.named(column), precedents_of(values, column, row), strict=True):
         put[reference.cell] = _stand_in(values.value[reference.name][group.rows[0]])
     for size, its_axis in report.sheet.algebra.sizes.items():

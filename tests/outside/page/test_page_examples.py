@@ -44,3 +44,6 @@ def test_the_edited_page_is_what_a_rebuild_gives(
     cells = live.cells()
     assert driving.differences(cells, Study(folder).computed.values) == []
     assert driving.differences(cells, issued) != []
+    live.click("live-save")
+    saved = live.page.locator("#live-note a[download]").all_inner_texts()
+    assert sorted(saved) == sorted(path.name for path in folder.iterdir() if path.name != "__pycache__")
