@@ -63,7 +63,7 @@ def test_it_is_as_expected_in_every_engine(
     ("expected", "told"),
     [
         ("c", ["c, samples: c[5] has no value (#INPUT!)", "over 4 of 9 readings, as is expected"]),
-        ("c[jam A]", ["c: 3 of 9 readings have no value: c[7], c[8] and c[9]", "are over 4 of 9 readings"]),
+        ("c[jam A]", ["c: 3 of 9 readings have no value: c[7] (jam B), c[8] (jam B)", "are over 4 of 9"]),
         ("c[standard]", ["c[standard] is expected to be odd (samples), and is not: drop it", "c: 5 of 9"]),
     ],
 )

@@ -76,6 +76,19 @@ def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None
         _ = Study(gas.folder(tmp_path / "mixed", table=table)).inputs
 
 
+def test_a_cell_without_a_value_is_told_with_the_name_of_its_row(tmp_path: Path) -> None:
+    code = "from loopsheet import Method, let, measured\nclass Two(Method):\n    a = measured('m', 'a')\n"
+    files = {
+        "workbook.py": f"{code}    b = measured('m', 'b')\n    c = let(a * b, 'c')\n",
+        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n',
+        "measurements.csv": "specimen,a [m],b [m]\nS-17,1.0,2.0\nS-18,1.1,\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    told = [each.sentence for each in Study(tmp_path).computed.oddities]
+    assert any("b: 1 of 2 readings have no value: b[2] (S-18) #INPUT!" in each for each in told)
+
+
 NOTE = "the door was open, 5 % of the time"
 
 

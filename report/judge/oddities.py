@@ -215,11 +215,17 @@ class _Oddities:
         by_cause: dict[str, list[Cell]] = {}
         for cell in cells:
             by_cause.setdefault(f"{cell.status.code}: {cell.why}", []).append(cell)
-        causes = [f"{_addresses(each)} {cause}" for cause, each in by_cause.items()]
+        causes = [f"{_some(list(map(self.named, each)))} {cause}" for cause, each in by_cause.items()]
         if (more := len(causes) - CAUSES) > 0:
             causes[CAUSES:] = [f"and {more} other causes" if more > 1 else "and another cause"]
         have = f": {len(cells)} of {self.size(column)} have" if column.axis is not None else " has"
         return f"{column.name}{have} no value: {'; '.join(causes)}"
+
+    def named(self, cell: Cell) -> str:
+        """A cell by its address, with the name of its row if that has one: ``w[3] (S-17)``."""
+        axis = self.sheet[cell.name].axis
+        names = self.inputs.naming if axis is not None and axis.is_given else ()
+        return " ".join((cell.address, *(f"({self.inputs.rows[cell.label[0]][name]})" for name in names)))
 
     def size(self, column: Column) -> str:
         axis = column.axis
