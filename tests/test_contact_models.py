@@ -127,6 +127,9 @@ def test_the_paper_s_tests_are_predicted_as_known(report: Any) -> None:
 def test_johnson_s_law_with_one_constant_comes_within_nine_percent_of_all(report: Any) -> None:
     for name in ("miss_e_johnson", "miss_x_p_johnson"):
         assert np.all(np.abs(report[name].value) < 9), name
+        largest = report[name.replace("miss", "most")].value
+        assert float(largest) == pytest.approx(np.max(np.abs(report[name].value)), rel=1e-14)
+    assert re.search(r"none by more than\s+8\.93\s*%", words_of(shipped_page()))
     assert np.max(np.abs(report["miss_x_p_thornton"].value)) > 20
 
 

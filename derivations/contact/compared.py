@@ -10,10 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from string import ascii_lowercase
 
-from sympy import Expr, Matrix, Symbol, sqrt
+from sympy import Expr, Matrix, Max, Symbol, sqrt
 
 from ..equation import Equation, define
 from ..global_fit import n_tests, over_tests
+from ..reductions import Greatest, Least
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k
 from ..vocabulary import Quantity
@@ -32,8 +33,8 @@ class Compared:
     """A model beside the tests."""
 
     quantities: tuple[Quantity, ...]
-    """What it misses of each test, the root of the mean square of each kind; slopes, and the sum of
-    squares."""
+    """What it misses of each test, the root of the mean square and the largest of each kind; slopes, and the
+    sum of squares."""
     equations: tuple[Equation, ...]
     """One for each."""
     without: dict[Symbol, Symbol]
@@ -96,6 +97,13 @@ def compared(model: ContactModel, number: str) -> Compared:
             "sum of squares over the variances",
             rf"\chi^2_{{{mark}%s}}",
             least=0.1,
+        )
+    for name, miss in zip(told, misses, strict=True):
+        tell(
+            f"most_{name}",
+            Max(Greatest(miss[k], (k, 1, n_tests)), -Least(miss[k], (k, 1, n_tests))),
+            f"largest miss of the {_WORDS[name]}",
+            rf"\hat{{\epsilon}}_{{{name[0]},{mark}%s}}",
         )
     return Compared(tuple(made), tuple(made.values()), without)
 

@@ -169,12 +169,13 @@ def _result(model: ContactModel) -> str:
         with_what += f", the {own.meaning} {{sym}}`{own.name}` = {{cell}}`{own.name}`"
     with_what += " and each restitution" if model.told else ""
     missed = " and ".join(
-        f"the {_TOLD[name]}s by {{cell}}`rms_{name}_{model.name}`"
+        f"the {_TOLD[name]}s by {{cell}}`rms_{name}_{model.name}`, none by more than "
+        f"{{cell}}`most_{name}_{model.name}`,"
         for name in ("x_p", "e")
         if name in model.predicts
     )
     over = f"over {{count}}`rms_x_p_{model.name} tests` of {{count}}`tests` tests"
-    return f"{with_what} it misses {missed}, {over}."
+    return f"{with_what} it misses {missed} {over}."
 
 
 def _equations(model: ContactModel) -> str:

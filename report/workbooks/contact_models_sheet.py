@@ -29,8 +29,8 @@ _BALL = "target_diameter"
 _YIELD = "sigma_Y"
 """Only first yield asks for it."""
 _SHOWN = {"m": "like x_p", "Pa": "GPa", "s": "us"}
-_PERCENT = ("miss_", "rms_")
-_AVERAGES = ("rms_", "chi2_")
+_PERCENT = ("miss_", "rms_", "most_")
+_AVERAGES = ("rms_", "chi2_", "most_")
 """What compares models, which is to be over the same tests of all."""
 _OTHERS = (n_tests > 1, "needs two tests: there are no others")
 _CALLED = {
