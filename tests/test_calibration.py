@@ -9,6 +9,7 @@ import pytest
 
 from loopsheet.report.cli import main
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.result.findings import checks as every_check
 from loopsheet.report.study import Study
 
 METHOD = """
@@ -74,6 +75,44 @@ def test_empty_cells_are_expected_of_a_column_or_of_a_word(
     said = "\n".join(each.message for each in checks)
     assert [each for each in told if each not in said] == []
     assert all(each.passed for each in checks) == (expected == "c")
+
+
+LIMITED = METHOD.replace("mean, measured,", "mean, measured, required,").replace(
+    "    sample =", '    limit = measured("mg/L", "limit", exact=True)\n    sample ='
+)
+LEGAL = '    legal = required(w <= mean(limit, of=sample), "within its limit", "mg/L")\n'
+
+
+def test_a_limit_that_a_result_is_compared_with_does_not_change_it(tmp_path: Path) -> None:
+    rows = [("standard", f"{c:g}", f"{y:g}", "") for c, y in STANDARDS]
+    rows += [("jam A", "", "0.80", "7.9"), ("jam A", "", "0.82", ""), ("jam B", "", "1.40", "15")]
+    expected = '[expected]\nc = "samples"\nlimit = "one each"\n"legal[standard]" = "a standard"\n'
+    head = "sample,c [mg/L],y [1],limit [mg/L]"
+    plain = grouped.write(tmp_path / "plain", tuple(rows), head, LIMITED)
+    folder = grouped.write(tmp_path / "legal", tuple(rows), head, LIMITED + LEGAL, expected)
+    report = Study(folder).computed
+    found = report.values.value
+    assert found["w"].tolist() == Study(plain).computed.values.value["w"].tolist()
+    assert found["legal"][1:] == pytest.approx([7.9e-3, 15e-3] - found["w"][1:], rel=1e-12)
+    failed = [each.message.partition(":")[0] for each in every_check(report) if not each.passed]
+    assert failed == ["legal[jam A] does not conform"]
+
+
+def test_a_blank_that_is_subtracted_has_rows_of_its_own(tmp_path: Path) -> None:
+    code = METHOD.replace("fit(y, ", "fit(net, ").replace(
+        "    b_0 =",
+        '    is_blank = measured("1", "1 of a blank", exact=True)\n'
+        '    net = let(y - sum(y * is_blank) / sum(is_blank), "signal less that of the blanks")\n    b_0 =',
+    )
+    rows = [("blank", "", "0.010", "1"), ("blank", "", "0.012", "1")]
+    rows += [("standard", f"{c:g}", f"{y:g}", "0") for c, y in STANDARDS]
+    rows += [(word, "", f"{y:g}", "0") for word, read in SAMPLES.items() for y in read]
+    folder = grouped.write(tmp_path, tuple(rows), "sample,c [mg/L],y [1],is_blank [1]", code)
+    values = Study(folder).computed.values
+    c, y = np.array(STANDARDS).T
+    slope, intercept = np.polyfit(c, y - 0.011, 1)
+    assert values.scalar("b_0") == pytest.approx(intercept, rel=1e-10)
+    assert values.scalar("b_1") / 1e3 == pytest.approx(slope, rel=1e-12)
 
 
 def test_what_is_expected_of_no_row_is_told(tmp_path: Path) -> None:

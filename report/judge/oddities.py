@@ -502,6 +502,9 @@ class _Oddities:
 
     def of_expectations(self) -> Iterator[Check]:
         """Whether each expectation has come true."""
+        for cell in (self.values.cell(*each.cell) for each in self.inputs.limits):
+            if cell.status is not Status.OK:
+                self.reason(cell, _no_value(cell))
         for each in self.inputs.expected:
             met = list(dict.fromkeys(self.met[each.address]))
             said = f"{each.address}, {each.reason}: {_some(met)}"

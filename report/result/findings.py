@@ -54,7 +54,10 @@ def checks(report: Report) -> tuple[Check, ...]:
         *map(of_comparison, every, names_of(c.published for c in every)),
         *of_referee(report),
         *report.oddities,
-        *(map(of_limits, report.uncertain().conformities) if report.inputs.limits else ()),
+        *(
+            of_limits(each, report)
+            for each in (report.uncertain().conformities if report.inputs.limits else ())
+        ),
         *(
             Check(CONFORMITY, each.address, False, undecided(each), each.at)
             for each in report.inputs.undecided
@@ -106,9 +109,15 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     return Check("published", name, comparison.as_expected, said, at, skipped=skipped)
 
 
-def of_limits(found: Conformity) -> Check:
-    """Whether a cell conforms to its limits; where the rule leaves that open, nobody has shown it."""
-    passed, told = found.decision is Decision.CONFORMS, "; ".join((str(found.limits), *probabilities(found)))
+def of_limits(found: Conformity, report: Report) -> Check:
+    """Whether a cell conforms to its limits; where the rule leaves that open, nobody has shown it.
+
+    One without a value may be expected to have none.
+    """
+    cell, told = report.values.cell(*found.limits.cell), "; ".join((str(found.limits), *probabilities(found)))
+    tests = report.values.tests(cell)
+    expected = any(each.covers(cell.name, cell.label, tests) for each in report.inputs.expected)
+    passed = found.decision is Decision.CONFORMS or (cell.value is None and expected)
     return Check(CONFORMITY, found.limits.address, passed, f"{sentence(found)} ({told})", found.limits.at)
 
 
