@@ -25,7 +25,7 @@ MOST = 40
 DIGITS = 10
 """Significant digits of a computed number that is put in."""
 LARGE = 1e6
-"""What is given, from here on, has a power of ten."""
+"""From here on idle zeros are a power of ten."""
 _PLACE = re.compile(r"\\text\{@(\d+)@\}")
 
 
