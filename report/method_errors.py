@@ -114,7 +114,7 @@ def told_together(word: Callable[P, T]) -> Callable[P, T]:
         if body is None:
             return word(*arguments, **named)
         if any(_failed_in((arguments, named))):
-            if word.__name__ == "fit":
+            if getattr(word, "__name__", "") == "fit":
                 body.without_fit(*arguments, *named.values())
             return cast(T, _Failed("_"))
         try:

@@ -45,7 +45,6 @@ from loopsheet.report.study import Study
 from loopsheet.report.workbooks.contact_models import WORKBOOK
 
 SHIPPED = Path(loopsheet.__file__).parent / "data" / "contact_models"
-PROSE = Path(loopsheet.__file__).parent / "templates" / "prose" / "contact_models.md"
 
 
 def test_all_of_it_is_proved_and_each_model_agrees_with_what_it_rests_on() -> None:
@@ -279,8 +278,8 @@ def test_a_target_may_be_a_ball(tmp_path: Path) -> None:
 
 
 def test_what_the_paper_quotes_of_first_yield_is_consistent() -> None:
-    """Speeds and falls, and how first yield goes with the strength, as the narrative says it."""
-    narrative = PROSE.read_text(encoding="utf-8")
+    """Speeds and falls, and how first yield goes with the strength, as the report says it."""
+    narrative = WORKBOOK.told["first_yield"]
     gravity, fast = 9.80665, 3 * 0.0254
     quoted = f"3 in/s, {fast:.3f} m/s, which is a fall of {1e3 * fast**2 / (2 * gravity):.1f} mm"
     assert quoted in narrative

@@ -204,6 +204,21 @@ def _squares() -> Iterator[SquareSum]:
         yield SquareSum(name, axis="tests", fitted=model.constants, each=each, asked=False)
 
 
+_INCH, _GRAVITY = 0.0254, 9.80665
+_QUOTED = {
+    "first_yield": "The paper quotes first yield of a half-inch steel ball on steel at 3 in/s, "
+    f"{3 * _INCH:.3f} m/s, which is a fall of {1e3 * (3 * _INCH) ** 2 / (2 * _GRAVITY):.1f} mm, and after a "
+    f"fall of 1 mm, which is {(2e-3 * _GRAVITY) ** 0.5:.2f} m/s. The speed of first yield is as the power "
+    f"5/2 of the yield strength: a target twice as strong takes one that is {2 ** (5 / 2):.1f} times as "
+    "high.",
+    "indentation": "Plastic indentations have from 2 to 2.5 by Tabor, and none more than 3.",
+    "daily_life": "The paper quotes impacts of 10⁻⁴ s to 10⁻³ s, with 10³ to 10⁴ times the acceleration of "
+    f"gravity, {_GRAVITY:.2f} m/s²: those of daily life, while a ball of steel on steel is in contact for a "
+    "shorter time ({table}`durations`).",
+}
+"""What sources say of impacts in general, by where the narrative says it."""
+
+
 WORKBOOK = Workbook(
     name="contact_models",
     title="Contact models beside drop tests on a soft target",
@@ -223,6 +238,7 @@ WORKBOOK = Workbook(
     told={
         "results": "\n".join(map(_result, MODELS)),
         "equations": "\n\n".join(map(_equations, MODELS)),
+        **_QUOTED,
     },
     tables=tuple(_tables()),
     figures=(
