@@ -194,6 +194,7 @@ def test_pictures_tell_groups_by_their_words_after_an_edit(
     )
     live = opened(grouped.write(tmp_path, grouped.rates(1), grouped.RATES_HEAD, code), open_page)
     live.type("y", 5, "-0.512")
+    live.drawn()
     words = list(dict.fromkeys(row[0] for row in grouped.rates(1)))
     for number, more in ((1, ["fit of each catalyst"]), (2, [])):
         figure = live.page.locator(f"#figure-plot_{number} svg")
