@@ -12,19 +12,22 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from sympy import Float, Symbol
 
 from loopsheet.derivations.contact.power_law import POWER_LAW
+from loopsheet.report.cells.values import Status
 from loopsheet.report.cli import main
 from loopsheet.report.impacts.card import Unreachable, card
-from loopsheet.report.impacts.code import SimulationCode
+from loopsheet.report.impacts.code import ContactFormula, SimulationCode, Typed
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.impacts.contact import law_of
 from loopsheet.report.impacts.damping import number_for
 from loopsheet.report.impacts.drops import Drops
-from loopsheet.report.impacts.law import ForceLaw, rate, x
-from loopsheet.report.impacts.simulation import Impact, simulate
+from loopsheet.report.impacts.law import ForceLaw, rate, v_0, x
+from loopsheet.report.impacts.simulation import STAY, Impact, simulate
 from loopsheet.report.impacts.source import SOURCES, identified
 from loopsheet.report.impacts.sweep import as_csv, course_as_csv, repeated, sweep
+from loopsheet.report.result import card_words
 from loopsheet.report.result.card import Card
 
 STEEL = Drops(
@@ -37,6 +40,7 @@ STEEL = Drops(
     beta=1.5,
     radius=6.35e-3,
 )
+NONE = None, math.nan, math.nan
 BUFFER = Drops(12.0, (0.4, 0.1), (0.82, 0.9), (math.nan, math.nan), 1.1, 3e4, 1.5, 0.2)
 """Something heavy and soft, in another order, without imprints."""
 
@@ -271,8 +275,8 @@ def test_the_course_of_impacts_keeps_their_energy(capsys: pytest.CaptureFixture[
     assert first[0][1:5] == [0, 0, 4.089, 0]
     assert first[-1][2:4] == pytest.approx([second[0][2], -0.479 * 4.089], rel=1e-8)
     assert second[-1][3] < first[-1][3]
-    impacts = [Impact(failure="none")]
-    assert course_as_csv(impacts, 1.0).splitlines()[1] == '1,,,,,,,"none"'
+    impacts = [Impact(failure="none", status=Status.NOROOT)]
+    assert course_as_csv(impacts, 1.0).splitlines()[1] == f'1,{"#NOROOT!," * 6}"none"'
 
 
 # --- the command ------------------------------------------------------------------------------------------
@@ -312,7 +316,22 @@ def test_an_impact_that_there_is_not_is_a_line_of_a_sweep() -> None:
     found = sweep(law, {}, 1.0, [1.0, 2.0], said.append)
     assert said == ["simulating 0 of 2 impacts", "simulating 1 of 2 impacts"]
     (_, first, _) = as_csv([1.0, 2.0], found).splitlines()
-    assert first == '1,,,,,,,,"the bodies do not part: the damping is as strong as the spring"'
+    assert first == f'1,{"#NOROOT!," * 7}"the bodies do not part: the damping is as strong as the spring"'
+
+
+def test_impacts_that_do_not_part_are_codes_in_a_card() -> None:
+    """A dashpot that grows as the fourth power of the impact speed holds the faster balls."""
+    spring, dashpot = Symbol("k", positive=True), Symbol("d", positive=True)
+    law = ForceLaw("a dashpot", spring * x + dashpot * v_0**4 * rate, pulls=True)
+    drop = STEEL.tests[0]
+    given = {spring: 1e7, dashpot: 1.5 * math.sqrt(1e7 * STEEL.mass) / STEEL.tests[2].speed ** 4}
+    typed = tuple(Typed(str(symbol), symbol, "SI", "", Float(value)) for symbol, value in given.items())
+    made = card(ContactFormula(name="d", title="", sources=(), law=law, typed=typed), STEEL, drop, "", *NONE)
+    *told, last = card_words.rows(made)
+    back = math.exp(-math.pi * 0.75 / math.sqrt(1 - 0.75**2))  # of a linear spring that may pull
+    assert [line[2] for line in told[3:]] == [f"{back:.4f}", "#NOROOT!"]
+    assert last[2] == "#NOROOT!"
+    assert made.notes[0] == f"#NOROOT! in the table: {STAY}"
 
 
 def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:

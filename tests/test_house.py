@@ -114,7 +114,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         NUMERIC,
     ),
     # one impact under a force law, and what simulation codes have to be told for it
-    "report.impacts": (rooms("impacts", "result.card") | {"derivations"}, NUMERIC),
+    "report.impacts": (rooms("cells.values", "impacts", "result.card") | {"derivations"}, NUMERIC),
     "report.archive": (DECLARED | rooms("archive", "files", "inputs", "machine", "result"), {"msgspec"}),
     "report.document": (
         DECLARED | rooms("document", "inputs.measurements", "inputs.published", "result"),

@@ -11,6 +11,7 @@ from sympy import Expr, Symbol
 
 from ...derivations.text import text
 from ...derivations.vocabulary import NO_WORDS
+from ..cells.values import Status
 from ..result.card import Behaviour, Card, CardRow, Prescribed, TypedValue
 from .code import ContactFormula, E, R, SimulationCode, Typed, alpha, depth, e, nu
 from .drops import Drop, Drops
@@ -69,11 +70,13 @@ def card(
         The formula cannot return this restitution.
     """
     constants, found, notes = solved(code, drops, drop, modulus, poisson, radius)
-    rows = []
+    rows, why = [], dict[str, None]()
     for test in drops.tests:
         again = simulate(code.law, constants, drops.mass, test.speed)
-        typed = _returned(code, constants, drops.mass, test.speed, test.e) if code.takes_e else None
-        rows.append(CardRow(test.speed, test.e, again.e, typed, test.x_p, again.x_p))
+        typed = _typed(code, constants, drops.mass, test.speed, test.e) if code.takes_e else Impact()
+        told = typed.e if code.takes_e else None
+        rows.append(CardRow(test.speed, test.e, again.e, told, test.x_p, again.x_p, again.code, typed.code))
+        why |= {f"{each.code} in the table: {each.failure}": None for each in (again, typed) if each.failure}
     prescribed = PRESCRIBED if code.takes_e else ()
     values = tuple(
         TypedValue(
@@ -101,10 +104,10 @@ def card(
         returned=Behaviour(found.e, found.x_p, found.x_m, found.F_m, found.duration),
         rows=tuple(rows),
         prescribed=tuple(
-            Prescribed(typed, _returned(code, constants, drops.mass, drop.speed, typed))
+            Prescribed(typed, _typed(code, constants, drops.mass, drop.speed, typed).e)
             for typed in prescribed
         ),
-        notes=(*notes, *(() if imprint else ("it leaves no imprint",)), *code.notes),
+        notes=(*notes, *why, *(() if imprint else ("it leaves no imprint",)), *code.notes),
     )
 
 
@@ -135,11 +138,11 @@ def _by_hertz(code: ContactFormula, one: Typed, modulus: float | None) -> bool:
     return stiffness and modulus is not None and code.by_hertz is not None
 
 
-def _returned(
+def _typed(
     code: ContactFormula, constants: Mapping[Symbol, float], mass: float, speed: float, typed: float
-) -> float:
-    """What comes back of a restitution that is typed in; NaN where the bodies do not part."""
-    return simulate(code.law, {**constants, e: typed}, mass, speed).e
+) -> Impact:
+    """What comes of a restitution that is typed in."""
+    return simulate(code.law, {**constants, e: typed}, mass, speed)
 
 
 def _formula(code: ContactFormula) -> str:
@@ -262,7 +265,8 @@ class _Solver:
                 power = (before[0] - log) / (missed - before[1])
             before = log, missed
             log += power * missed
-        return constants, Impact(failure="no stiffness lets the bodies come as near as is wanted")
+        near = "no stiffness lets the bodies come as near as is wanted"
+        return constants, Impact(failure=near, status=Status.NOROOT)
 
     def _power(self) -> float:
         """By which power of a depth the stiffness has to change."""

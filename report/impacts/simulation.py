@@ -2,8 +2,8 @@
 
 The equation is integrated in units of an estimated depth and of the time that the impact speed takes for
 it, so that tolerances mean the same for a steel ball and for a tyre. It is begun anew at corners of it:
-the turning point, and where a force that may not pull becomes zero. What cannot be simulated is told in a
-sentence, not raised.
+the turning point, and where a force that may not pull becomes zero. What cannot be simulated is told by the
+code of a cell and a sentence, not raised.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+
+from ..cells.values import Status
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,6 +37,9 @@ ROUNDED = 1e-12
 """Of the greatest approach: what two ways of reckoning one depth may differ by."""
 CORNERS = 8
 """Of how many intervals in which a force acts a restitution may consist."""
+
+STAY = "the bodies do not part: the damping is as strong as the spring"
+"""Where nothing comes back."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +66,22 @@ class Impact:
     """`time`, `approach`, `speed`, `force` and `work`: of shape (steps,); the course of it, where the
     integration stepped, and the work of the force so far."""
     failure: str = ""
-    """Why there is nothing of all this; empty, if there is."""
+    status: Status = Status.OK
+    """`failure` and `status`: why there is nothing of all this, and what cells show for it; empty and OK, if
+    there is."""
+
+    @property
+    def code(self) -> str:
+        """What a cell shows in place of a number; empty, if there is one."""
+        return self.status.code if self.status else ""
 
 
 class _Stopped(Exception):
-    """The integration cannot go on; the message is the sentence."""
+    """The integration cannot go on, and why."""
+
+    def __init__(self, status: Status, sentence: str) -> None:
+        super().__init__(sentence)
+        self.status = status
 
 
 def simulate(
@@ -88,7 +104,9 @@ def simulate(
     Returns
     -------
     Impact
-        With a sentence in `failure` where there is none.
+        With `status` and `failure` where there is none: ``#INPUT!`` without mass or speed, ``#DOMAIN!`` where
+        the law says no force, ``#NOROOT!`` where the bodies do not stop or do not part, ``#UNDECIDED!`` where
+        the steps of the integration do not get through.
 
     Examples
     --------
@@ -106,9 +124,10 @@ def simulate(
         depth = depth_of(forces, mass, speed)
         return _Course(forces, mass, speed, depth, before).impact()
     except _Stopped as stopped:
-        return Impact(failure=str(stopped))
+        return Impact(failure=str(stopped), status=stopped.status)
     except (ArithmeticError, TypeError, ValueError) as error:
-        return Impact(failure=f"{law.name} has no force for these numbers ({error})")
+        sentence = f"{law.name} has no force for these numbers ({error})"
+        return Impact(failure=sentence, status=Status.DOMAIN)
 
 
 def depth_of(forces: Forces, mass: float, speed: float) -> float:
@@ -119,8 +138,10 @@ def depth_of(forces: Forces, mass: float, speed: float) -> float:
         return math.log(forces.loading(depth, 0.0, depth)) + log_depth - math.log(mass * speed**2)
 
     low, high = math.log(1e-15), math.log(1e6)
-    if not (mass > 0 and speed > 0 and excess(low) < 0 < excess(high)):
-        raise _Stopped("no depth from a femtometre to 1000 km stops the bodies")
+    if not (mass > 0 and speed > 0):
+        raise _Stopped(Status.INPUT, f"mass {mass:g} kg and impact speed {speed:g} m/s are not both positive")
+    if not excess(low) < 0 < excess(high):
+        raise _Stopped(Status.NOROOT, "no depth from a femtometre to 1000 km stops the bodies")
     return math.exp(brentq(excess, low, high, xtol=1e-3))
 
 
@@ -144,7 +165,8 @@ class _Course:
         self.imprint = self.forces.imprint(self.depth * greatest)
         self.least = self.imprint / self.depth
         if not 0 <= self.least < greatest:
-            raise _Stopped("the bodies would part at a depth that is not below the greatest approach")
+            sentence = "the bodies would part at a depth that is not below the greatest approach"
+            raise _Stopped(Status.DOMAIN, sentence)
 
     def force(self, approach: float, rate: float) -> float:
         """The force of the law, over its unit; it may be negative."""
@@ -173,7 +195,7 @@ class _Course:
         self.peak = max(self.peak, self.acting(deepest, 0.0))
         over = self._restitution()
         if -float(self.state[1]) < SLOWEST:
-            raise _Stopped("the bodies do not part: the damping is as strong as the spring")
+            raise _Stopped(Status.NOROOT, STAY)
         time, states, force = (np.concatenate(parts, axis=-1) for parts in zip(*self.pieces, strict=True))
         second, energy = self.depth / self.speed, self.mass * self.speed**2
         return Impact(
@@ -198,7 +220,7 @@ class _Course:
             over = self.t
             if ended_by == 0 or not self._flies():
                 return over
-        raise _Stopped("the force begins and ends again and again while the bodies part")
+        raise _Stopped(Status.NOROOT, "the force begins and ends again and again while the bodies part")
 
     def _flies(self) -> bool:
         """Let them go on without a force: to where it acts again, if it does, else to where they part."""
@@ -242,11 +264,10 @@ class _Course:
             first_step=1e-4,
         )
         if found.status < 0:
-            raise _Stopped(
-                f"the integration ended at {self.depth * float(found.y[0, -1]):.3g} m: {found.message}"
-            )
+            ended = f"the integration ended at {self.depth * float(found.y[0, -1]):.3g} m: {found.message}"
+            raise _Stopped(Status.UNDECIDED, ended)
         if found.status == 0:
-            raise _Stopped("the bodies do not part: the damping is as strong as the spring")
+            raise _Stopped(Status.NOROOT, STAY)
         if peak:
             self.peak = max([self.peak, *(self.acting(*state[:2].tolist()) for state in found.y_events[-1])])
         self.pieces.append(

@@ -55,11 +55,12 @@ def repeated(
 
 
 def course_as_csv(impacts: Sequence[Impact], mass: float) -> str:
-    """What happens step by step, with the digits that are sure; of an impact that there is not, why."""
+    """What happens step by step, with the digits that are sure; of an impact that there is not, its code."""
     lines = [COURSE]
     for number, each in enumerate(impacts, 1):
         if each.failure:
-            lines.append(f'{number},,,,,,,"{each.failure}"')
+            codes = [each.code] * COURSE.count("[")
+            lines.append(",".join([f"{number}", *codes, f'"{each.failure}"']))
             continue
         assert each.speed is not None
         columns = (each.time, each.approach, each.speed, each.force, mass * each.speed**2 / 2, each.work)
@@ -69,10 +70,10 @@ def course_as_csv(impacts: Sequence[Impact], mass: float) -> str:
 
 
 def as_csv(speeds: Sequence[float], impacts: Sequence[Impact]) -> str:
-    """What the impacts show, a line each, with the digits that are sure; of one that there is not, why."""
+    """What the impacts show, a line each, with the digits that are sure; or the code of what there is not."""
     lines = [HEAD]
     for speed, each in zip(speeds, impacts, strict=True):
         numbers = (each.e, each.x_m, each.F_m, each.x_p, each.duration, each.compression, each.loss)
-        cells = [f"{number:.10g}" if number == number else "" for number in numbers]
+        cells = [f"{number:.10g}" if not each.failure else each.code for number in numbers]
         lines.append(",".join([f"{speed:.10g}", *cells, f'"{each.failure}"' if each.failure else ""]))
     return "\n".join(lines)

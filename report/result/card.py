@@ -38,7 +38,8 @@ class Behaviour(NamedTuple):
 class CardRow(NamedTuple):
     """One measured speed, in m/s: restitution as measured, by the card, and if it is typed in as measured.
 
-    Then the imprint in m as measured, NaN where it was not, and by the card.
+    Then the imprint in m as measured, NaN where it was not, and by the card; and the codes of both
+    restitutions that nothing returns, which are NaN.
     """
 
     speed: float
@@ -47,6 +48,8 @@ class CardRow(NamedTuple):
     typed: float | None
     imprint: float
     imprint_by_card: float
+    code: str = ""
+    typed_code: str = ""
 
 
 class Prescribed(NamedTuple):

@@ -48,19 +48,17 @@ def rows(card: Card) -> Iterator[list[str]]:
     heads = ["v [m/s]", "e measured", "e by this card", *(["e if e is typed in"] if card.takes_e else [])]
     yield [*heads, *(["imprint measured", "imprint by this card"] if card.leaves_imprint else [])]
     for row in card.rows:
-        typed = [] if row.typed is None else [_share(row.typed)]
-        imprints = [_metres(row.imprint), _metres(row.imprint_by_card)] if card.leaves_imprint else []
-        yield [f"{row.speed:.4g}", f"{row.measured:.4f}", _share(row.by_card), *typed, *imprints]
+        typed = [] if row.typed is None else [row.typed_code or f"{row.typed:.4f}"]
+        imprints = (
+            [_metres(row.imprint), row.code or _metres(row.imprint_by_card)] if card.leaves_imprint else []
+        )
+        yield [f"{row.speed:.4g}", f"{row.measured:.4f}", row.code or f"{row.by_card:.4f}", *typed, *imprints]
 
 
 def misses(card: Card) -> str:
     """By how much its restitution is off where it is furthest off."""
     row = card.furthest
     return f"{row.by_card - row.measured:+.4f} at {row.speed:.4g} m/s"
-
-
-def _share(value: float) -> str:
-    return f"{value:.4f}" if value == value else "does not part"
 
 
 def _metres(value: float) -> str:

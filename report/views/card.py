@@ -41,7 +41,8 @@ def _as_json(card: Card) -> str:
 
 
 def _named(values: Behaviour | CardRow | Prescribed) -> dict[str, object]:
-    return {name: number(value) for name, value in values._asdict().items()}
+    told = values._asdict().items()
+    return {name: value if isinstance(value, str) else number(value) for name, value in told}
 
 
 FORMATS: Mapping[str, Callable[[Card], str]] = {**printers(_blocks), "json": _as_json}
