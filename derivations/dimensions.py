@@ -108,6 +108,7 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
 
 
 def _tidy(exponent: Expr) -> Expr:
+    exponent = exponent.doit()  # an author's 3/2 + 1 may stand there as it is printed
     exponent = expand(nsimplify(exponent, rational=True) if exponent.has(Float) else exponent)
     return exponent if exponent.is_polynomial() else cancel(exponent)
 

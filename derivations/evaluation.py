@@ -55,6 +55,7 @@ _SAME_NAME = (
 
 _FUNCTIONS: dict[Any, Callable[..., Any]] = {
     **{getattr(sympy, name): getattr(mpmath, name) for name in _SAME_NAME.split()},
+    sympy.betainc: mpmath.betainc,
     sympy.ceiling: mpmath.ceil,
     sympy.LambertW: mpmath.lambertw,
     sympy.elliptic_k: mpmath.ellipk,

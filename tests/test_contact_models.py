@@ -32,6 +32,7 @@ from loopsheet.derivations.contact.lankarani_1994 import LANKARANI_1994
 from loopsheet.derivations.contact.model import ContactModel
 from loopsheet.derivations.contact.models import LEDGER, MODELS
 from loopsheet.derivations.contact.power_law import POWER_LAW
+from loopsheet.derivations.contact.prescribed import AUTHORS
 from loopsheet.derivations.equation import Derivation
 from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
@@ -352,6 +353,8 @@ def test_a_table_says_what_each_model_assumes_and_takes() -> None:
         assert model.source in said
     assert "two numbers; each restitution is told" in said
     assert WORKBOOK.told["results"].count("no number") == 2
+    assert all(author.title in said for author in AUTHORS)
+    assert "each test: of all authors, and the exact one" in said
 
 
 def test_sums_of_squares_have_their_number_and_a_probability(report: Any) -> None:
@@ -479,8 +482,10 @@ def test_loops_are_native_charts_of_the_workbook_a_panel_for_each_test(tmp_path:
     with zipfile.ZipFile(tmp_path / "report.xlsx") as parts:
         charts = [parts.read(name).decode() for name in parts.namelist() if "charts/chart" in name]
     panels = [chart for chart in charts if "loops!" in chart]
-    assert len(panels) == 5
-    for number, chart in enumerate(panels):
+    assert len(panels) == 10
+    for chart in panels[5:]:
+        assert all(author.title in chart for author in AUTHORS)
+    for number, chart in enumerate(panels[:5]):
         assert f"<a:t>test {number + 1}</a:t>" in chart
         first = 8 + 33 * number
         places = [

@@ -24,12 +24,14 @@ from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Ledger, Step, define
 from ..vocabulary import Quantity, Vocabulary
+from .quantities import SHARED
 
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, then equations in their order
-    "x", "rate", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "W",
-    "family", "compression", "left", "rebound", "work", "approach", "returned", "peak_speed",
-    "peak_approach", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores", "MEMBERS", "LEDGER",
+    "x", "rate", "F", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "F_m", "W",
+    "family", "compression", "left", "rebound", "work", "approach", "returned", "by_factor", "peak_speed",
+    "peak_approach", "greatest", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores",
+    "MEMBERS", "LEDGER",
 ]
 # fmt: on
 
@@ -50,6 +52,7 @@ VOCABULARY = Vocabulary(
     Quantity("x_m", "maximum approach", "m", "x_{m%s}", (1e-5, 1e-4)),
     Quantity("u_F", "rate at the greatest force, over the impact speed", "1", "u_{F%s}", (0.05, 0.95)),
     Quantity("x_F", "approach at the greatest force", "m", "x_{F%s}", (1e-6, 1e-4)),
+    SHARED["F_m"],
     Quantity("J", "mean rate of an undamped path, over the impact speed", "1", "J%s", (0.2, 0.8)),
     Quantity("c_LN", "damping number by Lankarani and Nikravesh", "1", "c_{LN%s}", (0.05, 1.5)),
     Quantity("c_HG", "damping number by Hu and Guo", "1", "c_{HG%s}", (0.05, 1.5)),
@@ -65,8 +68,8 @@ VOCABULARY = Vocabulary(
     Quantity("W_HG", "the same, as Hu and Guo take it", "J", "W_{HG%s}", (1e-3, 1.0)),
     Quantity("W_F", "the same, as Flores and others take it", "J", "W_{F%s}", (1e-3, 1.0)),
 )
-x, rate, F, K, n, c, e, e_o, v_0, m_red, x_m, u_F, x_F, g, J, W = VOCABULARY.plain(
-    "x xdot F K n c e e_o v_0 m_red x_m u_F x_F g J W"
+x, rate, F, K, n, c, e, e_o, v_0, m_red, x_m, u_F, x_F, F_m, g, J, W = VOCABULARY.plain(
+    "x xdot F K n c e e_o v_0 m_red x_m u_F x_F F_m g J W"
 )
 c_LN, c_HG, c_F, c_HC, c_LW, c_G, c_CM = VOCABULARY.plain("c_LN c_HG c_F c_HC c_LW c_G c_CM")
 W_LN, W_HG, W_F = VOCABULARY.plain("W_LN W_HG W_F")
@@ -139,6 +142,12 @@ with evaluate(False):
         title="restitution that is returned",
         conditions=(_within,),
     )
+    by_factor = Equation(
+        "(L120)",
+        (c + 1 - g, log((1 + c) / g)),
+        "(L106) in terms of the factor g = 1 - c e_o that damping leaves at separation",
+        title="restitution by the factor of the damping at separation",
+    )
 
     # The greatest force comes before the maximum approach: there dF/dt = 0.
     work_peak = Equation(
@@ -170,6 +179,26 @@ with evaluate(False):
         (n * u_F / (n + 1), c * ((1 - u_F) / c - log((1 + c) / (1 + c * u_F)) / c**2)),
         "the force is greatest where its rate is zero",
         title="rate at the greatest force",
+        conditions=(u_F < 1,),
+    )
+    spot = Equation(
+        "",
+        (n * m_red * v_0**2 * u_F / (c * K), x_F ** (n + 1)),
+        "dF/dt = 0",
+        title="approach at the greatest force by the rate there",
+    )
+    at_peak = Equation(
+        "",
+        (F_m, K * x_F**n * (1 + c * u_F)),
+        "(L101) there",
+        Kind.ASSUMPTION,
+        "force of the family at its greatest",
+    )
+    greatest = Equation(
+        "(L119)",
+        (F_m, K * (n * m_red * v_0**2 * u_F / (c * K)) ** (n / (n + 1)) * (1 + c * u_F)),
+        "(L101) where its rate is zero",
+        title="greatest force with damping",
         conditions=(u_F < 1,),
     )
 
@@ -347,6 +376,7 @@ LEDGER = Ledger(
                 ),
             )
         ),
+        Derivation((Step(by_factor, (left, returned), (e_o,), "Put the factor in.", multiplier=Integer(1)),)),
         Derivation.of(peak_approach, (work_peak,), (K,), "Integrate both sides."),
         Derivation(
             (
@@ -357,6 +387,18 @@ LEDGER = Ledger(
                     "Put the stiffness that dF/dt = 0 gives into (L107).",
                     multiplier=n * u_F / ((n + 1) * x_F ** (n + 1)),
                 ),
+            )
+        ),
+        Derivation(
+            (
+                Step(
+                    spot,
+                    (stationary,),
+                    (),
+                    "Clear the fractions.",
+                    multiplier=m_red * v_0 * x_F / (c * K * (1 + c * u_F)),
+                ),
+                Step(greatest, (spot, at_peak), (x_F, F_m), "Put that approach into (L101)."),
             )
         ),
         mean_flores,

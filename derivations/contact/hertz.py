@@ -20,6 +20,7 @@ __all__ = [
     "HERTZ",
     "duration",
     "half",
+    "lasting_elastic",
     "modulus",
     "radius",
     "radius_of_two",
@@ -62,6 +63,11 @@ def duration(x_m: Expr, x_p: Expr, e: Expr, compression: Expr = hertz, restituti
     `restitution`: the exponents of both branches.
     """
     return x_m / v * lasts(compression) + (x_m - x_p) / (e * v) * lasts(restitution)
+
+
+def lasting_elastic(x_m: Expr) -> Expr:
+    """How long an elastic contact lasts: both branches are the same way."""
+    return 2 * lasts(hertz) * x_m / v
 
 
 def unloads(peak: Expr, x_m: Expr, x_p: Expr) -> Expr:
@@ -147,7 +153,7 @@ with evaluate(False):
     lasting = define(
         "(L129)",
         t,
-        2 * lasts(hertz) * x_m / v,
+        lasting_elastic(x_m),
         "duration of an elastic impact",
         "the approach divided by its rate, summed back and forth (DLMF 5.12.1)",
     )

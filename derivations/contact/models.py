@@ -8,7 +8,7 @@ from ..equation import Derivation, Equation, Ledger
 from ..fit_checks import leverage
 from ..symbols import VOCABULARY as PAPER
 from ..vocabulary import Vocabulary
-from . import checks
+from . import checks, prescribed
 from .compared import compared
 from .hertz import CONTACT, HERTZ
 from .johnson import JOHNSON, YIELD
@@ -63,6 +63,7 @@ LEDGER = Ledger(
         *(entry for model in MODELS for entry in model.entries),
         *_beside(*MODELS),
         *checks.ENTRIES,
+        *prescribed.ENTRIES,
     ),
     vocabulary=Vocabulary(
         *dict.fromkeys((
@@ -71,11 +72,13 @@ LEDGER = Ledger(
             *(own for model in MODELS for own in model.quantities),
             *(own for beside in BESIDE.values() for own in beside.quantities),
             *checks.OWN,
+            *prescribed.OWN,
         ))
     ),
     parts=(
         (*_PAPER, *POWER_LAW.entries, *_beside(POWER_LAW)),
         (*CONTACT, *checks.ENTRIES),
+        (*CONTACT, *prescribed.ENTRIES),
         *(
             tuple(dict.fromkeys((*_ELASTIC, *YIELD, *model.entries, *_beside(model))))
             for model in MODELS

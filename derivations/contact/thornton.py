@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Integer, Integral, Piecewise, Rational, Rel, pi, sqrt
+from sympy import Expr, Integer, Integral, Piecewise, Rational, Rel, acos, betainc, pi, sqrt
 from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Step, define
@@ -41,6 +41,7 @@ OWN = (
     Quantity("F_y", "force where the pressure is cut off", "N", r"F_{y%s}", (0.1, 1000.0)),
     Quantity("x_m_thornton", "maximum approach by Thornton", "m", r"x_{m,\mathrm{T}%s}", (1e-5, 1e-4)),
     Quantity("F_m_thornton", "greatest force by Thornton", "N", r"F_{m,\mathrm{T}%s}", (100.0, 1e4)),
+    Quantity("t_thornton", "duration of the contact by Thornton", "s", r"t_{\mathrm{T}%s}", (1e-6, 1e-3)),
     Quantity("e_thornton", "restitution by Thornton", "1", r"e_{\mathrm{T}%s}", (0.05, 0.99)),
     Quantity("x_p_thornton", "imprint by Thornton", "m", r"x_{p,\mathrm{T}%s}", (1e-6, 1e-4), positive=False),
 )
@@ -48,11 +49,12 @@ _WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *johnson.YIELD_WORDS, *OWN)
 v, e, m_red, x = SHARED.plain("v e m_red x")
 E_star, R, K, any_a, any_delta, F_m = SHARED.plain("E_star R_b K a_c delta F_m")
 x_Y, p_Y, v_Y = _WORDS.plain("x_Y p_Y v_Y")
-a, delta, share, alone, p_y, x_y, V_y, F, F_y, x_m, peak, e_T, x_p = _WORDS.plain(
+a, delta, share, alone, p_y, x_y, V_y, F, F_y, x_m, peak, t, e_T, x_p = _WORDS.plain(
     "a_thornton delta_thornton r_Y_alone p_y_alone p_y x_y V_y F_thornton F_y x_m_thornton F_m_thornton "
-    "e_thornton x_p_thornton"
+    "t_thornton e_thornton x_p_thornton"
 )
 half = hertz.half
+_part = 1 / (hertz.hertz + 1)
 
 with evaluate(False):
     cut_off = johnson.approach_at_yield.at({x_Y: x_y, p_Y: p_y})
@@ -144,6 +146,18 @@ with evaluate(False):
         defines=p_y,
     )
 
+    # Up to the limit the rate falls as sqrt(1 - (V_y/v)^2 (x/x_y)^(5/2)); beyond it the contact is a spring
+    # that would be at rest at x_y/3, and back it goes as a power.
+    lasting = define(
+        "",
+        t,
+        _part * x_y / v * (v / V_y) ** Rational(4, 5) * betainc(_part, half, 0, (V_y / v) ** 2)
+        + sqrt(m_red / (pi * R * p_y)) * acos(2 * x_y / (3 * x_m - x_y))
+        + (x_m - x_p) / (e_T * v) * hertz.lasts(hertz.hertz),
+        "duration of the contact by Thornton",
+        "the way of each branch divided by its rate, summed (DLMF 5.12.1 and 8.17.1)",
+    )
+
     def _by_cases(part: str, beyond: Equation, elastic: Expr, faster: Rel = x_m > x_y) -> Equation:
         """What holds at every speed: of an impact that is slower than the limit, Hertz's."""
         of, value = beyond.members
@@ -156,6 +170,7 @@ with evaluate(False):
         _by_cases("b", greatest, hertz.force.at({x: x_m}).members[-1]),
         _by_cases("c", restitution, Integer(1)),
         _by_cases("d", imprint, Integer(0)),
+        _by_cases("e", lasting, hertz.lasting_elastic(x_m)),
     )
 
 _unloads = hertz.returned_work.at({F_m: peak, e: e_T, any_delta: delta})
@@ -232,7 +247,7 @@ THORNTON = ContactModel(
         *_entries,
     ),
     cells=(cut_off, speed, *CASES),
-    predicts={"x_m": x_m, "F_m": peak, "e": e_T, "x_p": x_p},
+    predicts={"x_m": x_m, "F_m": peak, "t": t, "e": e_T, "x_p": x_p},
     loading=Piecewise((hertz.force.value, x < x_y), (beyond.value.xreplace({F_y: force_there.value}), True)),
     unloading=hertz.unloads(peak, x_m, x_p),
     constants=1,

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from itertools import chain, count
 from typing import Any
 
-from sympy import Expr, Indexed, Symbol, beta, false
+from sympy import Expr, Indexed, Symbol, false
 from sympy.core.symbol import Str
 
 from ...derivations.rebuilt import rebuilt
@@ -15,7 +15,7 @@ from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowOrder, RowSum, Total
-from .special import in_elementary_terms
+from .special import SPECIAL, in_elementary_terms
 
 __all__ = ["lowered", "lowered_column"]
 
@@ -128,7 +128,7 @@ class Lowering:
             return number * found
         if isinstance(expression, (Indexed, Symbol)):
             return self.leaf(expression, column, axis)
-        if isinstance(expression, beta):
+        if isinstance(expression, SPECIAL):
             expression = in_elementary_terms(expression)
         if not expression.args:
             return expression

@@ -1,20 +1,27 @@
-"""Euler's beta function in terms that every engine has: products, powers and an exponential.
+"""Euler's beta functions in terms that every engine has: products, powers and an exponential.
 
 B(a, 1/2) is sqrt(pi) Gamma(a)/Gamma(a + 1/2). The argument is moved up, factor by factor, to where the series
 of the ratio in 1/w, w = z - 1/4, converges to the wanted digits.
 
-Source: A Erdélyi, F G Tricomi, Pacific J Math 1 (1951) 133, for the ratio; DLMF 5.11.8 for its logarithm.
+The incomplete one up to z is z^a/a times Gauss's function F(a, 1/2; a + 1; z), which is F(2a, 1; a + 1; w) at
+w = (1 - sqrt(1 - z))/2: a series of positive terms, each at most half of the one before.
+
+Sources: A Erdélyi, F G Tricomi, Pacific J Math 1 (1951) 133, for the ratio; DLMF 5.11.8 for its logarithm;
+DLMF 8.17.7 and M Abramowitz, I A Stegun, Handbook of Mathematical Functions, 15.3.22, for both functions F.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache, reduce
+from math import ceil, log10
 from operator import mul
 from typing import Any
 
-from sympy import Add, Expr, Integer, Rational, bernoulli, beta, exp, pi, sqrt
+from sympy import Add, Expr, Integer, Rational, bernoulli, beta, betainc, exp, pi, sqrt
 
-__all__ = ["EXACT", "in_elementary_terms"]
+__all__ = ["EXACT", "SPECIAL", "in_elementary_terms"]
+
+SPECIAL = (beta, betainc)
 
 DOUBLE, EXACT = 18, 60
 """The digits that are right: enough for doubles, and for the judge at 50."""
@@ -23,19 +30,31 @@ DOUBLE, EXACT = 18, 60
 def in_elementary_terms(expression: Any, digits: int = DOUBLE) -> Any:
     """An expression without beta functions.
 
-    `expression`: its beta functions are B(a, 1/2), a > 0. `digits`: how many are right.
+    `expression`: its beta functions are B(a, 1/2), a > 0, and that up to z, 0 <= z <= 1. `digits`: how many
+    are right.
     """
-    if not expression.has(beta):
+    if not expression.has(*SPECIAL):
         return expression
-    return expression.replace(beta, lambda a, half: _beta(a, half, digits))
+    expression = expression.replace(beta, lambda a, half: _beta(a, half, digits))
+    return expression.replace(betainc, lambda a, half, low, z: _incomplete(a, half, low, z, digits))
+
+
+def _incomplete(a: Expr, half: Expr, low: Expr, z: Expr, digits: int) -> Expr:
+    if half != Rational(1, 2) or low != 0:
+        raise NotImplementedError(f"the beta function of {half} from {low}: that of 1/2 from 0 is known")
+    w, factor, terms = (1 - sqrt(1 - z)) / 2, Integer(1), list[Expr]()
+    for n in range(ceil(digits / log10(2))):
+        terms.append(factor.evalf(digits + 2) * w**n)
+        factor *= (2 * a + n) / (a + 1 + n)
+    return z**a / a * Add(*terms)
 
 
 def _beta(a: Expr, half: Expr, digits: int) -> Expr:
-    if half != Rational(1, 2):
-        raise NotImplementedError(f"the beta function of {half}: that of 1/2 is known")
-    if a.is_number:
+    if a.is_number and half.is_number:
         number: Expr = beta(a, half).evalf(digits)
         return number
+    if half != Rational(1, 2):
+        raise NotImplementedError(f"the beta function of {half}: that of 1/2 is known")
     moved = _moved(digits)
     w = a + moved - Rational(1, 4)
     series = Add(*(c / w**n for n, c in _coefficients(digits)))

@@ -8,10 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
+from ...derivations.contact.prescribed import AUTHORS
 from ..quantity import POISSON, Bounds
 from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
 from . import soft_impact
-from .contact_models_charts import LOOPS, columns, over_speed
+from .contact_models_charts import DAMPED, LOOPS, columns, over_speed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -144,6 +145,14 @@ def _tables() -> Iterator[TableSpec]:
     yield TableSpec("approaches", "Maximum approach by the models", _of_all("x_m_{}", "x_m"))
     yield TableSpec("forces", "Greatest force by the models", _of_all("F_m_{}", "F_m"))
     yield TableSpec("durations", "Duration of the contact by the models", _of_all("t_{}", "t"))
+    for name, title, told in (
+        ("damping_numbers", "Damping numbers for the measured restitution", [each.c for each in AUTHORS]),
+        ("damping_returns", "Restitution that they return", [each.e for each in AUTHORS]),
+        ("damping_approaches", "Maximum approach with them", [each.x_m for each in AUTHORS]),
+        ("damping_forces", "Greatest force with them", [each.F_m for each in AUTHORS]),
+    ):
+        asked = ("e",) if name == "damping_returns" else ()
+        yield TableSpec(name, title, (*asked, *(each.own.name for each in told if each)))
     yield TableSpec("exponents", "Exponents", ("e_slope", "alpha_by_e", "alpha_eiv", "meyer_n"))
     yield TableSpec(
         "checks",
@@ -255,6 +264,13 @@ WORKBOOK = Workbook(
         FigureSpec(
             "loops", "3", "Force over approach by all models, a panel for each test.", chart=LOOPS,
             alt="Panels with the same axes: in each a loop for every model, up to its greatest force.",
+        ),
+        FigureSpec(
+            "damped", "4", "Force over approach with the damping that a typed restitution gets, a panel for "
+            "each test: of all authors, and the exact one, which returns what is typed in.",
+            chart=DAMPED,
+            alt="Panels with the same axes: in each a loop for every author's damping number, from no "
+            "approach to none.",
         ),
     ),
     drawn=columns,

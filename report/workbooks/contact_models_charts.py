@@ -6,13 +6,14 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import MODELS
+from ...derivations.contact.prescribed import AUTHORS
 from ..charts import BLUE, INK, VERMILION, Chart, Series
 
 if TYPE_CHECKING:
     from ..charts import Drawn
     from ..sheet import Sheet
 
-__all__ = ["LOOPS", "columns", "over_speed"]
+__all__ = ["DAMPED", "LOOPS", "columns", "over_speed"]
 
 _COLOURS = ("#56b4e9", "#cc79a7", VERMILION, "#009e73", BLUE, "#e69f00", "#f0e442")
 """Of Okabe and Ito: told apart by every eye."""
@@ -47,6 +48,21 @@ LOOPS = Chart(
     height=4.2,
 )
 """The first on top: where two load alike, the loop of the elastic one is but a line."""
+DAMPED = Chart(
+    "force over approach with the damping of a typed restitution",
+    "approach x",
+    "force F",
+    tuple(
+        Series(f"{way}_x_{name}", f"{way}_F_{name}", author.title, colour=colour)
+        for author, colour in zip(AUTHORS, (*_COLOURS, INK), strict=True)
+        for name in (author.c.own.name,)
+        for way in ("loading", "unloading")
+    ),
+    from_zero=True,
+    panels=True,
+    height=4.2,
+)
+"""On top the one that returns what is typed in."""
 
 
 def columns(sheet: Sheet) -> Drawn:

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from sympy import Expr, Indexed, Rational, Rel, Symbol
+from sympy import Expr, Indexed, Integer, Rational, Rel, Symbol
 
-from ...derivations.contact import checks, hertz, johnson
+from ...derivations.contact import checks, hertz, johnson, prescribed
 from ...derivations.contact.model import ContactModel
 from ...derivations.contact.models import BESIDE, LEDGER, MODELS
+from ...derivations.contact.one_constant import COMES_BACK, LOSES
 from ...derivations.equation import Equation
 from ...derivations.global_fit import n_tests
 from ...derivations.symbols import k
@@ -75,6 +76,9 @@ def sheet(given: frozenset[str]) -> Sheet:
             laid.tell(equation, spare=bool(model.left_out), alongside=alike)
     for equation in checks.CELLS:
         laid.tell(equation, checks.NEEDS)
+    for author in prescribed.AUTHORS:
+        for each in author.told:
+            laid.tell_prescribed(each)
     return Sheet(tuple(laid.columns.values()))
 
 
@@ -146,9 +150,13 @@ class _Laid:
         needs: Mapping[Any, Any] | None = None,
         without: Mapping[Symbol, Symbol] | None = None,
         expects: Mapping[Any, tuple[Rel, str]] | None = None,
+        solved: prescribed.Solved | None = None,
         **more: Any,
     ) -> None:
-        """A column by the equation that defines it; one that has it on both sides is solved for it."""
+        """A column by the equation that defines it; one that has it on both sides is solved for it.
+
+        `solved`: how; left out, it lies in the interval in which proofs sample it.
+        """
         symbol = _defined(equation)
         called = without or {}
         own, new = LEDGER.vocabulary[symbol.name], called.get(symbol, symbol)
@@ -169,14 +177,26 @@ class _Laid:
         if equation.sides[0] in (symbol, own[k]) and not equation.sides[-1].has(symbol):
             rule: Formula | Root = Formula(equation.at(own_where))
         else:
+            cells = {old: cell for old, cell in where.items() if old != symbol}
+            said = equation.at(cells)
             low, high = map(Rational, map(str, own.span))
-            said = equation.at({old: cell for old, cell in where.items() if old != symbol})
             rule = Root(said, said, symbol, symbol, low, high, (low + high) / 2, steps=8)
+            if solved is not None:
+                end = solved.end.xreplace(cells)
+                rule = Root(
+                    said, solved.form.at(cells), solved.unknown, solved.value.xreplace(cells),
+                    Integer(0), end, end / 2, Integer(-1), Integer(1), steps=8,
+                )  # fmt: skip
         column = replace(blank, rule=rule, requires=requires, limits=limits)
         self.columns[new.name] = column
         self.where |= {new: column.cell}
         if new == symbol:
             self.where |= {own[k]: column.cell}
+
+    def tell_prescribed(self, told: prescribed.Told) -> None:
+        """A cell of the damping that a typed restitution gets."""
+        needs = {told.own.symbol: (COMES_BACK, LOSES)} if told.own.name.startswith("c_") else None
+        self.tell(told.equation, needs, solved=told.solved)
 
     def limits(self, expected: tuple[Rel, str] | None, where: Mapping[Expr, Expr]) -> list[Limit]:
         """Where a cell is expected, if all that this names is in the sheet."""
@@ -225,5 +245,16 @@ def branches(sheet: Sheet, points: int) -> Drawn:
             found += [
                 x,
                 drawn(f"{way}_F_{model.name}", axis, force, "N", f"force {meaning}", requires=closed),
+            ]
+    for author in prescribed.AUTHORS:
+        back = author.e.own.symbol if author.e else hertz.e
+        even = Rational(5, 2)  # with Hertz's force the work is as this power of the approach
+        ways = {"loading": 1 - share**even, "unloading": -back * (1 - (1 - share) ** even)}
+        for way, rate in ways.items():
+            name, meaning = author.c.own.name, f"while {way}, damping by {author.title}"
+            depth, force = (part.xreplace(where) for part in prescribed.course(author, rate))
+            found += [
+                drawn(f"{way}_x_{name}", axis, depth, "m", f"approach {meaning}", display="like x_p"),
+                drawn(f"{way}_F_{name}", axis, force, "N", f"force {meaning}"),
             ]
     return Drawn(tuple(found), {axis.count: points})

@@ -1,0 +1,186 @@
+"""What damping returns of a restitution that is typed in: Hertz's force with the numbers of all authors.
+
+Said with the equations of :mod:`~loopsheet.derivations.contact.damping` for Hertz's exponent, the impact
+speed of a test and its measured restitution as the one that is wanted. Sources are told there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from sympy import Expr, Integer, Max, Rational, Symbol, beta
+
+from ..equation import Derivation, Equation, Step
+from ..vocabulary import Quantity
+from . import damping, hertz
+
+__all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solved", "Told", "course"]
+
+_TAKEN = ("xdot", "c", "g", "e_o", "u_F", "x_F", "W_LN", "W_HG", "W_F")
+_LEFT_ASIDE = ("(L109)", "(L117)", "(L118)")
+_ELASTIC = replace(damping.VOCABULARY["W"], name="W_el", latex=r"W_{\mathrm{el}%s}")
+_FORCE = Quantity("F_damped", "force with damping", "N", r"F_{d%s}", (1.0, 5000.0))
+_HERE: Mapping[Any, Any] = {
+    damping.n: hertz.hertz,
+    damping.v_0: hertz.v,
+    damping.W: _ELASTIC.symbol,
+    damping.F: _FORCE.symbol,
+    # (L109) is Euler's beta function (DLMF 5.12.1).
+    damping.J: beta(hertz.hertz / 2 + hertz.half, Rational(3, 2)) / 2,
+}
+"""What is said there of any power, here of Hertz's: his stiffness has the same symbol."""
+
+
+def _here(equation: Equation) -> Equation:
+    return replace(equation.at(_HERE), parent=None, renamed=())
+
+
+def _moved(entry: Equation | Derivation) -> Equation | Derivation:
+    if isinstance(entry, Equation):
+        return _here(entry)
+    return Derivation(tuple(map(_step, entry.steps)))
+
+
+def _step(step: Step) -> Step:
+    return replace(
+        step,
+        claim=_here(step.claim),
+        premises=tuple(map(_here, step.premises)),
+        eliminate=tuple(of.xreplace(_HERE) for of in step.eliminate),
+        multiplier=None if step.multiplier is None else step.multiplier.xreplace(_HERE),
+    )
+
+
+def course(author: Author, rate: Expr) -> tuple[Expr, Expr]:
+    """Approach and force of an impact where its rate is so much of the impact speed; 1 at first, then less.
+
+    From the greatest approach on it is negative, down to the restitution that comes back.
+    """
+    here = {c: author.c.own.symbol, u_F: rate}
+    power, stopped = peak_approach.sides
+    at = Max(stopped.xreplace(here), 0) ** (1 / power.exp)  # the bodies part at zero, which rounding may miss
+    return at, family.value.xreplace({**here, damping.rate: rate * hertz.v, damping.x: at})
+
+
+class Solved(NamedTuple):
+    """How a cell is solved for."""
+
+    form: Equation
+    unknown: Symbol
+    value: Expr
+    """`form`, `unknown` and `value`: what is solved, for what, and the cell in terms of that."""
+    end: Expr = Integer(1)
+    """The unknown is between 0, where the left side of the form is the smaller one, and this."""
+
+
+class Told(NamedTuple):
+    """A cell of each test: the equation that defines it, and how that is solved if both sides have it."""
+
+    own: Quantity
+    equation: Equation
+    solved: Solved | None = None
+
+
+@dataclass(frozen=True)
+class Author:
+    """An author's damping number, and what it returns of each test."""
+
+    title: str
+    c: Told
+    e: Told | None
+    """`c` and `e`: the damping number, and what comes back; None where that is what is typed in."""
+    x_m: Told
+    u_F: Told
+    F_m: Told
+    """`x_m`, `u_F` and `F_m`: the greatest approach; the greatest force, and the rate where it acts over the
+    impact speed."""
+
+    @property
+    def told(self) -> tuple[Told, ...]:
+        """All of them, each after what it needs."""
+        return tuple(each for each in (self.c, self.e, self.x_m, self.u_F, self.F_m) if each)
+
+
+family, returned, by_factor, approach, peak_approach, peak_speed, greatest = map(
+    _here,
+    (
+        damping.family, damping.returned, damping.by_factor, damping.approach, damping.peak_approach,
+        damping.peak_speed, damping.greatest,
+    ),
+)  # fmt: skip
+c, g, e_o, x_m, u_F, F_m = damping.c, damping.g, damping.e_o, damping.x_m, damping.u_F, damping.F_m
+
+
+def _author(mark: str, title: str, member: Equation | None) -> Author:
+    """The cells of one.
+
+    `member`: its formula; None is (L106) solved for the number with which what is typed in comes back.
+    """
+
+    def own(name: str, meaning: str, unit: str, latex: str, span: tuple[float, float]) -> Quantity:
+        said = f"{meaning}, damping by {title}" if name != "c" else f"damping number by {title}"
+        return Quantity(f"{name}_{mark}", said, unit, latex.replace("*", rf"\mathrm{{{mark}}}%s"), span)
+
+    typed, number = hertz.e, damping.VOCABULARY.get(f"c_{mark}")
+    number = number or own("c", "", "1", "c_{*}", (0.05, 1.5))
+    back = own("e", "restitution", "1", "e_{*}", (0.05, 0.6))
+    deepest = own("x_m", "maximum approach", "m", "x_{m,*}", (1e-5, 1e-4))
+    rate = own("u_F", "rate at the greatest force over the impact speed", "1", "u_{F,*}", (0.05, 0.95))
+    peak = own("F_m", "greatest force", "N", "F_{m,*}", (100.0, 1e4))
+    here = {c: number.symbol, e_o: back.symbol, x_m: deepest.symbol, u_F: rate.symbol, F_m: peak.symbol}
+
+    def told(of: Quantity, equation: Equation, solved: Solved | None = None) -> Told:
+        return Told(of, replace(equation.at(here), defines=of.symbol), solved)
+
+    # Over the factor g the right side of (L120) falls from infinity. If the restitution is known, c is
+    # (1 - g)/e, and it meets the left side below g = e, and at g = 1, where nothing is damped.
+    exact = Told(
+        number,
+        replace(returned.at({c: number.symbol, e_o: typed}), defines=number.symbol),
+        Solved(by_factor.at({c: (1 - g) / typed}), g, (1 - g) / typed, typed),
+    )
+    return Author(
+        title,
+        exact if member is None else Told(number, member),
+        None
+        if member is None
+        else told(back, returned, Solved(by_factor.at(here), g, (1 - g) / number.symbol)),
+        told(deepest, approach),
+        told(rate, peak_speed, Solved(peak_speed.at(here), rate.symbol, rate.symbol)),
+        told(peak, greatest),
+    )
+
+
+_MARKS = {
+    "hunt_crossley": "HC",
+    "lee_wang": "LW",
+    "lankarani_nikravesh": "LN",
+    "gonthier": "G",
+    "flores": "F",
+    "hu_guo": "HG",
+    "carvalho_martins": "CM",
+}
+"""Of the authors' symbols."""
+AUTHORS = (
+    *(
+        _author(mark, damping.MEMBERS[name].title, _here(damping.MEMBERS[name]))
+        for name, mark in _MARKS.items()
+    ),
+    _author("D", "the exact inverse", None),
+)
+"""Those of :data:`~loopsheet.derivations.contact.damping.MEMBERS`, and the one that all of them approach."""
+
+ENTRIES = tuple(
+    _moved(entry)
+    for entry in damping.LEDGER.entries
+    if (entry.claim if isinstance(entry, Derivation) else entry).label not in _LEFT_ASIDE
+)
+"""The ledger of the damping family for Hertz's exponent, without what discrete elements have."""
+OWN = (
+    *(damping.VOCABULARY[name] for name in _TAKEN),
+    _ELASTIC,
+    _FORCE,
+    *(each.own for author in AUTHORS for each in author.told),
+)
