@@ -19,12 +19,14 @@ import numpy as np
 from sympy import Symbol, lambdify
 
 from loopsheet.derivations import soft_impact as model
+from loopsheet.derivations.alpha_root import ISOLATED
 from loopsheet.derivations.soft_impact import XP, E, V
+from loopsheet.report.column import Root
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.roots import derivatives, householder
+from loopsheet.report.method_places import Standing
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
-from loopsheet.report.workbooks.soft_impact_root import alpha_rule
 
 ROUNDS = 7
 SHEET = soft_impact(frozenset({"ball_mass"}))
@@ -36,7 +38,7 @@ PLAIN = {
     cell: Symbol(name, positive=True)
     for cell, name in zip((model.beta, V[1], V[2], E[1], E[2], XP[1], XP[2]), NAMES, strict=True)
 }
-RULE = alpha_rule(PLAIN)
+RULE = Root(model.eq11, **{name: Standing([PLAIN]).put(part) for name, part in ISOLATED.items()})
 OWN = "generated: decided, bracketed, checked"
 NEWTON = "lambdify(cse=True), four Newton steps, 8k blocks"
 C = "C, four Newton steps"

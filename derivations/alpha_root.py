@@ -8,7 +8,9 @@ logarithm, and the logarithm turns at most once: its roots can be told apart wit
 
 from __future__ import annotations
 
-from sympy import Expr, Integer, exp, log, sqrt
+from typing import Any
+
+from sympy import Expr, Integer, Max, Ne, Piecewise, Poly, Pow, Rational, exp, log, numer, sqrt, together
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, Step, define
@@ -17,6 +19,7 @@ from .symbols import VOCABULARY
 
 __all__ = [
     "ENTRIES",
+    "ISOLATED",
     "Lambda",
     "end",
     "log_form",
@@ -111,6 +114,37 @@ def starting_value() -> Expr:
     return 2 * log_depths / ((beta + 1) * (t + sqrt(t**2 - 4 * log_depths * pull * middle)))
 
 
+def _isolated() -> dict[str, Any]:
+    """How the one root of (11) is found, for two tests in any order: in u all of it has a closed form."""
+    # Both approaches are positive for alpha + 1 > (beta + 1) e^2 of either test, and alpha is for u < 1.
+    livelier = (beta + 1) * Max(E[1] ** 2, E[2] ** 2)
+    own = evaluated(logarithm)
+    at_one, equal_e = own.xreplace({u: Integer(1)}), own.xreplace({E[2]: E[1], u: 1 / livelier})
+    # The definition of u is linear in alpha; sympy's own solve() would load its system of units for this.
+    by_alpha, rest = Poly(numer(together(reciprocal.residuals[0])), alpha).all_coeffs()
+    # Only a pair whose e rises with the speed may have two roots, others get no point.
+    point = turning.value.xreplace({Lambda: log_speeds.value})
+    start = starting_value()
+    # Exchanging the tests exchanges the roots of its quadratic.
+    (root,) = (power for power in start.atoms(Pow) if power.exp == Rational(1, 2))
+    return {
+        "form": root_form,
+        "unknown": u,
+        "value": -rest / by_alpha,
+        "low": Integer(0),
+        "high": 1 / Max(livelier, 1),
+        # Where u -> 0 the form tends to 1 - x_p1/x_p2. At the other end, if that is not u = 1, the factor of
+        # the livelier test vanishes and the other decides; where both vanish, or none, the logarithm of (L6)
+        # does: it takes no square of a speed that doubles may not hold.
+        "sign_low": XP[2] - XP[1],
+        "sign_high": Piecewise((at_one, livelier < 1), (E[2] - E[1], Ne(E[1], E[2])), (equal_e, True)),
+        "turning": (Piecewise((point, (E[2] - E[1]) * (V[2] - V[1]) > 0), (Integer(0), True)),),
+        "turning_by": (log_form, slope),
+        "start": start.xreplace({root: Piecewise((root, V[2] > V[1]), (-root, True))}),
+        "steps": 4,
+    }
+
+
 slope_law = Equation(
     "",
     (evaluated(logarithm).diff(u), _slope),
@@ -132,3 +166,6 @@ ENTRIES = (
     ),
 )
 """What follows (L5) in the ledger; (L5) itself follows from (11)."""
+
+ISOLATED = _isolated()
+"""What says how often (11) has a root, and where it is sought: by what a root of a sheet takes."""

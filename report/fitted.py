@@ -25,7 +25,7 @@ from .named import member, name_of
 from .quantity import Bounds
 from .workbook import Curve, FigureSpec, sentence_case
 
-__all__ = ["DeclaredFit", "told_apart"]
+__all__ = ["DeclaredFit", "stated_of", "told_apart"]
 
 STATED = "stated"
 POINTS = 65
@@ -94,7 +94,7 @@ class DeclaredFit:
         _refuse_names(name, sought)
         _refuse_errors(name, observed, model, u, of)
         every = {each: known[name_of(each)] for each in u}
-        stated = {each: _stated(own) for each, own in every.items() if _is_stated(name, own, u[each])}
+        stated = {each: stated_of(own) for each, own in every.items() if _is_stated(name, own, u[each])}
         others = {each: stated[each].cell if each in stated else size for each, size in u.items()}
         own_size = others.pop(observed)
         words = {each: said.meaning or str(each) for each, said in sought.items()}
@@ -358,7 +358,7 @@ def _is_stated(name: str, of: Column, u: Any) -> bool:
     return True
 
 
-def _stated(of: Column) -> Column:
+def stated_of(of: Column) -> Column:
     """The stated standard uncertainties of a column."""
     rule, meaning = Given("uncertainty", Bounds(low=0), of.name), f"standard uncertainty of the {of.meaning}"
     more: dict[str, Any] = {"display": f"like {of.name}", "positive": False, "exact": True}

@@ -13,35 +13,37 @@ sympy: what is measured for the cell of a row, what is computed for a row if its
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 from sympy import Expr, false, sympify, true
 from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, StrictLessThan
 
+from ..derivations.equation import Ledger
 from ..derivations.reductions import Median
+from ..derivations.vocabulary import Quantity
 from . import method_algebra
-from .charts import COLOURS, Chart, Series, series_of
 from .codata import adjusted
-from .column import Column, Given, SheetError
-from .messages.errors import listing
+from .column import SheetError
 from .method_body import MethodBody
-from .method_errors import CURRENT, WatchedBody, told_together
-from .method_lines import ComputedLine, Declaration, FitLine, InputLine, PointsLine, UnknownLine, exact
+from .method_errors import CURRENT, WatchedBody, current, named_next, told_together
+from .method_ledger import by, expected, numbered, sketch, standing, uncertainty
+from .method_lines import ComputedLine, FitLine, InputLine, PointsLine, UnknownLine, exact
 from .method_made import workbook_of
+from .method_shown import plot, table
 from .named import name_of
 from .quantity import Bounds, behind
-from .workbook import FigureSpec, TableSpec, Workbook, sentence_case
+from .workbook import Workbook
 
 __all__ = [
     "Method",
+    "by",
     "claim",
     "constant",
     "count",
     "derivative",
+    "expected",
     "fit",
     "given",
     "groups",
@@ -49,20 +51,24 @@ __all__ = [
     "mean",
     "measured",
     "median",
+    "numbered",
     "pairs",
     "plot",
     "points",
     "required",
     "root",
+    "sketch",
+    "standing",
     "table",
     "total",
+    "uncertainty",
     "unknown",
 ]
 
 
 @told_together
 def given(
-    unit: str,
+    unit: str | Quantity,
     meaning: str,
     *,
     low: float | None = None,
@@ -73,14 +79,18 @@ def given(
     exact: bool = False,
     latex: str = "",
     example: str = "",
+    optional: bool = False,
+    otherwise: Any = None,
+    asked: str = "",
 ) -> Any:
     """Declare a number of ``[parameters]``.
 
     Parameters
     ----------
-    unit : str
+    unit : str or Quantity
         Its unit, ``K^-1`` or ``um``, in which it is shown; in report.toml any that converts to it may stand.
-        Formulas have it in SI, and an angle in radians.
+        Formulas have it in SI, and an angle in radians. A word of a ledger has unit, meaning and LaTeX; it is
+        shown as it is typed.
     meaning : str
         What it is, for messages and captions.
     low, high : float, optional
@@ -97,10 +107,17 @@ def given(
         How it is printed; as its name is, without.
     example : str
         What `loopsheet new` writes for it, as in report.toml; of a column, its numbers with spaces between.
+    optional : bool
+        Whether it may be left out; what rests on it then is left out, too.
+    otherwise : Expr or Equation, optional
+        What it is where it is left out: of optional parameters, which are refused beside it.
+    asked : str
+        What who gives it is told instead of the meaning: ``mass of the target; left out, it is immobile``.
     """
     column = {"exact": exact, "latex": latex, "positive": positive}
-    return _said(
-        InputLine(meaning, unit, column, _bounds(low, high, positive, whole), default, example=example)
+    more = {"example": example, "optional": optional, "otherwise": otherwise, "asked": asked}
+    return named_next(
+        InputLine(meaning, cast(str, unit), column, _bounds(low, high, positive, whole), default, **more)
     )
 
 
@@ -127,12 +144,12 @@ def constant(name: str, *, latex: str = "") -> Any:
     default = f"{value!r} {unit}" + (f", u = {u!r} {unit}" if u else "")
     column = {"exact": not u, "latex": latex, "positive": value > 0}
     bounds = _bounds(None, None, value > 0, False)
-    return _said(InputLine(f"{name}, {source}", unit, column, bounds, default, is_constant=True))
+    return named_next(InputLine(f"{name}, {source}", unit, column, bounds, default, is_constant=True))
 
 
 @told_together
 def measured(
-    unit: str,
+    unit: str | Quantity,
     meaning: str,
     *,
     low: float | None = None,
@@ -144,8 +161,10 @@ def measured(
 ) -> Any:
     """Declare a column of the table of measurements; parameters as for :func:`given`."""
     column = {"exact": exact, "latex": latex, "positive": positive}
-    said = InputLine(meaning, unit, column, _bounds(low, high, positive), is_measured=True, example=example)
-    return _said(said)
+    said = InputLine(
+        meaning, cast(str, unit), column, _bounds(low, high, positive), is_measured=True, example=example
+    )
+    return named_next(said)
 
 
 @told_together
@@ -183,7 +202,7 @@ def let(
     """
     shown = f"like {name_of(like)}" if like is not None else display
     column = {"latex": latex, "positive": False} | ({"display": shown} if shown else {})
-    return _said(ComputedLine(meaning, unit, column, (exact(formula),), label, because))
+    return named_next(ComputedLine(meaning, unit, column, (exact(formula),), label, because))
 
 
 @told_together
@@ -196,6 +215,7 @@ def unknown(
     high: float | None = None,
     positive: bool = False,
     latex: str = "",
+    of: Any = None,
 ) -> Any:
     """Announce what a root or a parameter of a fit will be called, so that an equation can name it.
 
@@ -208,10 +228,12 @@ def unknown(
     low, high, positive
         Of a parameter, as for :func:`given`: proofs draw it so. One that is found outside of low and high has
         a warning, one that is found not positive has no value.
+    of : Expr, optional
+        A column, if there is one for each of its rows; of what :func:`by` iterates.
     """
     column = {"latex": latex, "positive": positive}
     bounds = _bounds(low, high, positive)
-    return UnknownLine(meaning, unit, column, None if start is None else exact(start), bounds)
+    return UnknownLine(meaning, unit, column, None if start is None else exact(start), bounds, of)
 
 
 @told_together
@@ -240,7 +262,9 @@ def required(
     column = {"latex": latex, "positive": False}
     margin = (exact(stays.gts - stays.lts),)
     because = because or f"what is left of {stays}"
-    return _said(ComputedLine(f"{meaning}, margin", unit, column, margin, label, because, is_margin=True))
+    return named_next(
+        ComputedLine(f"{meaning}, margin", unit, column, margin, label, because, is_margin=True)
+    )
 
 
 @told_together
@@ -291,7 +315,7 @@ def root(
     column |= {"display": display} if display else {}
     sides = exact(left), exact(right)
     ends |= {"steps": steps, "none": none}
-    return _said(ComputedLine(meaning, unit, column, sides, label, because, ends))
+    return named_next(ComputedLine(meaning, unit, column, sides, label, because, ends))
 
 
 @told_together
@@ -325,7 +349,7 @@ def fit(
     """
     sizes = (u if isinstance(u, Mapping) else {observed: u}).items()
     weights = {each: size if size is None or isinstance(size, str) else exact(size) for each, size in sizes}
-    return _said(FitLine(observed, exact(model), weights, label, figures, of))
+    return named_next(FitLine(observed, exact(model), weights, label, figures, of))
 
 
 @told_together
@@ -339,13 +363,13 @@ def total(formula: Any, *, of: Any = None) -> Expr:
     of : optional
         What :func:`groups` returned: the sum over the rows of each group, so that there is one for each.
     """
-    return _body().total(formula, of=of)
+    return current().total(formula, of=of)
 
 
 @told_together
 def mean(formula: Any, *, of: Any = None) -> Expr:
     """The mean over all rows, or over all pairs, or over the rows of each group; as :func:`total`."""
-    return _body().mean(formula, of)
+    return current().mean(formula, of)
 
 
 @told_together
@@ -356,7 +380,7 @@ def median(formula: Any, *, of: Any = None) -> Expr:
     Python: in the body of a method `max(x)` and `min(x)` are taken over the rows of a column, and
     `max(x, of=specimen)` over those of each group; `max(a, b)` and `min(a, b)` are of several formulas.
     """
-    return _body().ordered(Median, formula, of)
+    return current().ordered(Median, formula, of)
 
 
 @told_together
@@ -369,7 +393,7 @@ def count(formula: Any = 0, *, of: Any = None) -> Expr:
     of : optional
         As for :func:`total`.
     """
-    return _body().number(formula, of)
+    return current().number(formula, of)
 
 
 @told_together
@@ -392,7 +416,7 @@ def derivative(formula: Any, by: Any) -> Expr:
     SheetError
         A root, a fit or a sum over rows rests on it: that has no formula to put in.
     """
-    return method_algebra.derivative(_body(), exact(formula), exact(by))
+    return method_algebra.derivative(current(), exact(formula), exact(by))
 
 
 def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:
@@ -419,7 +443,7 @@ def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", e
     SheetError
         A name is taken, or no name.
     """
-    return _body().grouped(by, rows or f"{by}s", index, size, example)
+    return current().grouped(by, rows or f"{by}s", index, size, example)
 
 
 def pairs(
@@ -444,7 +468,7 @@ def pairs(
     both = members.split()
     if len({index, size, *both}) < 4 or len(both) != 2:
         raise SheetError(f"the members of a pair have two names, members='i j', not {members!r}")
-    return _body().paired(index, size, both)
+    return current().paired(index, size, both)
 
 
 @told_together
@@ -473,7 +497,7 @@ def points(
         How many, on each curve.
     """
     column = {"latex": latex, "positive": False}
-    return _said(PointsLine(meaning, unit, column, exact(low), exact(high), number, label))
+    return named_next(PointsLine(meaning, unit, column, exact(low), exact(high), number, label))
 
 
 @told_together
@@ -502,69 +526,7 @@ def claim(
     label : str
         The number of its equation; its place among the equations, without.
     """
-    method_algebra.claimed(_body(), exact(left), exact(right), meaning, because, from_, label)
-
-
-@told_together
-def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None:
-    """Show points of two columns, with bars of standard uncertainties, and what is computed beside them.
-
-    Parameters
-    ----------
-    x, y : Expr
-        Columns over the rows.
-    *curves : Expr
-        Further columns: what is measured as points, what is computed as a line in the order of x; single
-        numbers, each across all of it; or pairs ``(x, y)`` that have points, or a line, of their own.
-    caption : str
-        Below the figure; what its axes are, without.
-    log : str
-        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
-    """
-    body = _body()
-
-    def named(*cells: Any) -> list[Column]:
-        return [body.column(name_of(cell)) for cell in cells]
-
-    across, up = named(x, y)
-    for each in (across, up):
-        if each.axis is None:
-            raise SheetError(f"{each.name} is a single number, which is no column to plot", each.name)
-    series = [series_of(across, up)]
-    for curve, colour in zip(curves, itertools.cycle(COLOURS), strict=False):
-        if isinstance(curve, tuple):
-            series.append(replace(series_of(*named(*curve)), colour=colour))
-        else:
-            (column,) = named(curve)
-            is_read = isinstance(column.rule, Given) and column.axis is not None
-            style = "points" if is_read else "level" if column.axis is None else "line"
-            series.append(Series(across.name, column.name, column.meaning, style, colour, bars=is_read))
-    said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
-    chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
-    caption = caption or f"{sentence_case(said)}."
-    body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
-
-
-@told_together
-def table(title: str, *columns: Any, note: str = "") -> None:
-    """Show columns beside each other, or numbers below each other; all that no table shows follows by itself.
-
-    Parameters
-    ----------
-    title : str
-        Its caption.
-    *columns : Expr
-        Names of the body, in their order: all of the rows, all of the pairs, or all single numbers.
-    note : str
-        Below it.
-    """
-    body = _body()
-    shown = [body.column(name_of(cell)) for cell in columns]
-    if len({column.axis for column in shown}) != 1:
-        told = listing([column.name for column in shown]) if shown else "nothing"
-        raise SheetError(f"the table '{title}' is of one kind of rows, or of single numbers, not of {told}")
-    names = tuple(column.name for column in shown)
-    body.tables.append(TableSpec(f"table_{len(body.tables) + 1}", title, names, note))
+    method_algebra.claimed(current(), exact(left), exact(right), meaning, because, from_, label)
 
 
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
@@ -573,22 +535,6 @@ def _bounds(low: float | None, high: float | None, positive: bool, whole: bool =
             raise SheetError(f"low and high are numbers, in the unit that is declared, not {end!r}")
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
-
-
-def _body() -> MethodBody:
-    """That of the method which is being declared."""
-    body = CURRENT.get()
-    if body is None:
-        raise SheetError("sums, counts and plots stand in the body of a class of Method")
-    return body
-
-
-def _said(line: Declaration | FitLine) -> Any:
-    """What a line declares; the name comes with the assignment, and must come."""
-    body = CURRENT.get()
-    if body is not None:
-        body.unnamed.append(line)
-    return line
 
 
 class _Declaring(type):
@@ -601,7 +547,7 @@ class _Declaring(type):
         cls, name: str, bases: tuple[type, ...], /, *, rows: str = "readings",
         index: str = "k", size: str = "n", **more: Any,
     ) -> MethodBody:  # fmt: skip
-        body = WatchedBody(rows, index, size)
+        body = WatchedBody(rows, index, size, more.get("ledger"))
         if bases:
             CURRENT.set(body)
         if bases and bases != (Method,):
@@ -611,6 +557,7 @@ class _Declaring(type):
     def __new__(
         cls, name: str, bases: tuple[type, ...], body: Mapping[str, Any], /, *, source: str = "",
         headline: str = "", rows: str = "", index: str = "", size: str = "",
+        ledger: Ledger | None = None, prose: str = "",
     ) -> _Declaring:  # fmt: skip
         """Take what the body declared; the first line of its docstring is the title.
 
@@ -625,6 +572,11 @@ class _Declaring(type):
         rows, index, size : str
             What the rows of the table of measurements are called, ``readings``, their running number in
             formulas, ``k``, and how many there are, ``n``.
+        ledger : Ledger
+            The equations that :func:`by` takes, with their proofs and their vocabulary. It says which rows a
+            sum leaves out; elsewhere they follow from what results rest on.
+        prose : str
+            The narrative of the report, in templates/prose; it says itself which tables it shows.
         """
         found = super().__new__(cls, name, bases, dict(body))
         if bases:
@@ -633,7 +585,7 @@ class _Declaring(type):
                 raise body.first_wrong
             CURRENT.set(None)
             title = (found.__doc__ or name).strip().partition("\n")[0].removesuffix(".")
-            found.workbook = workbook_of(name, body, title, source, re.findall(r"\w+", headline))
+            found.workbook = workbook_of(name, body, title, source, re.findall(r"\w+", headline), prose)
         return found
 
 

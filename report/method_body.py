@@ -25,6 +25,7 @@ from .method_lines import (
     FitLine,
     InputLine,
     PointsLine,
+    TakenLine,
     UnknownLine,
     exact,
     in_si,
@@ -35,6 +36,7 @@ from .method_lines import (
     unit_in_si,
     with_unit,
 )
+from .method_places import Optionals, Standing
 from .named import member, name_of, references, summed_over
 from .quantity import Bounds, behind
 from .sheet import Sheet
@@ -53,8 +55,11 @@ def _numbers(*names: str) -> Iterator[Symbol]:
 class MethodBody(dict[str, Any]):
     """The namespace of a method while it is declared: every name that is assigned becomes a cell."""
 
-    def __init__(self, rows: str, index: str, size: str) -> None:
+    def __init__(self, rows: str, index: str, size: str, ledger: Ledger | None = None) -> None:
         super().__init__()
+        self.ledger = ledger
+        self.places = Standing([{}])  # what its symbols stand for
+        self.optional = Optionals()
         self.axis = Axis(rows, *_numbers(index, size))
         self.axes = [self.axis]  # and the pairs of its rows, and groups of them
         self.groups: list[GroupAxis] = []
@@ -263,10 +268,27 @@ class MethodBody(dict[str, Any]):
         """All rows that formulas name."""
         every = [sympify(formula) for formula in formulas]
         cells = self.named_in(*every)
-        named = {cell.index for cell in cells if cell.over is None}
+        named = {cell.index or cell.name for cell in cells if cell.over is None}
         named |= {str(told.args[1]) for formula in every for told in formula.atoms(Member)}
         beneath = {axis: {name for of in axis.parents for name in of.named} for axis in self.axes}
-        return [axis for axis in self.axes if not named.isdisjoint(axis.named.keys() - beneath[axis])]
+        own = {axis: {*axis.named, *map(str, axis.ordinals)} - beneath[axis] for axis in self.axes}
+        return [axis for axis in self.axes if not named.isdisjoint(own[axis])]
+
+    def shown_like(self, unit: str) -> str:
+        """How a quantity of a ledger is shown: like what is measured in its unit, if that is one column."""
+        same = [one.name for one in self.inputs if isinstance(one, Measured) and one.unit == unit != "1"]
+        return f"like {same[0]}" if len(same) == 1 else ""
+
+    def instead(self, column: Column, otherwise: Any) -> None:
+        """Say what a column is where a parameter that it names, or that it is itself, is left out."""
+        if not isinstance(otherwise, Equation):
+            own = exact(otherwise), "where it is left out", Kind.DEFINITION, column.meaning
+            otherwise = Equation(self.free_number(), (column.cell, own[0]), *own[1:])
+            self.entries.append(otherwise)
+        of = otherwise.sides[0]
+        rule = Formula(self.places.put(otherwise, {of: column.cell}))
+        self.optional.others[column.name] = replace(column, rule=rule)
+        self.places[-1][of] = column.cell
 
     def paired(self, index: str, size: str, members: Sequence[str]) -> tuple[Callable[[Any], Expr], ...]:
         """Every pair of rows, and what takes a formula for the rows at its first and at its second member."""
@@ -293,6 +315,8 @@ class MethodBody(dict[str, Any]):
         Those are rows in which what one of them, or what is computed from them, asks for has no value; what
         rests on a sum cannot be asked. As a sum has one value, results that share it are of the same rows.
         """
+        if self.ledger is not None:
+            return tuple(self.columns.values())
         sheet = Sheet(tuple(self.columns.values()))
         below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
         over = {c.name: {*sheet.summed_axes(c), *sheet.algebra.counted(c)} for c in sheet.columns}
@@ -347,7 +371,10 @@ class MethodBody(dict[str, Any]):
             self._refuse_name_of_rows(name)
         if isinstance(value, UnknownLine):
             self.announced[name] = value
-            value = Column(name, None, Given(), positive=value.column["positive"]).symbol
+            rows = None if value.of is None else self.axis_of(value.of)
+            value = Column(name, rows, Given(), positive=value.column["positive"]).cell
+        if isinstance(value, TakenLine):
+            value = value.declare(self, name)
         if isinstance(value, FitLine):
             value = self._fitted(name, value)
         if isinstance(value, Declaration):
@@ -435,21 +462,23 @@ class MethodBody(dict[str, Any]):
         bounds = said.bounds.within(size.scale, size.zero)
         if size.zero:  # nothing is colder than 0 K
             bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
-        own = name, said.unit, said.meaning, bounds
+        own = name, said.unit, said.asked or said.meaning, bounds
         self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
         self.constants += [name] * said.is_constant
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
         rule = Given("measured" if said.is_measured else "parameter")
         axis = self.axis if said.is_measured else None
-        return Column(
-            name,
-            axis,
-            rule,
-            meaning=said.meaning,
-            **unit_in_si(size),
-            **{**said.column, "positive": positive},
-        )
+        words = {"meaning": said.meaning, **unit_in_si(size), **said.column, "positive": positive}
+        if own_word := said.quantity:
+            words |= {"meaning": own_word.meaning, "latex": own_word.latex, "positive": own_word.positive}
+            words |= {"display": f"like {name}"}
+        column = Column(name, axis, rule, **words)
+        if said.optional or said.otherwise is not None:
+            self.optional.names.append(name)
+        if said.otherwise is not None:
+            self.instead(column, said.otherwise)
+        return column
 
     def free_number(self) -> str:
         """The next number of an equation."""

@@ -14,13 +14,14 @@ from typing import Any, ParamSpec, TypeVar, cast
 
 from sympy import Basic, Symbol
 
+from ..derivations.equation import Ledger
 from .cells.units import check_column
 from .column import SheetError
 from .messages.errors import suggest
 from .method_body import MethodBody
-from .method_lines import ComputedLine, FitLine, PointsLine
+from .method_lines import ComputedLine, Declaration, FitLine, PointsLine, TakenLine
 
-__all__ = ["CURRENT", "WatchedBody", "told_together"]
+__all__ = ["CURRENT", "WatchedBody", "current", "named_next", "told_together"]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -45,8 +46,8 @@ class _Failed(Symbol):  # type: ignore[misc]
 class WatchedBody(MethodBody):
     """A body that goes on behind a line that is wrong."""
 
-    def __init__(self, rows: str, index: str, size: str) -> None:
-        super().__init__(rows, index, size)
+    def __init__(self, rows: str, index: str, size: str, ledger: Ledger | None = None) -> None:
+        super().__init__(rows, index, size, ledger)
         self.wrong: dict[int, Exception] = {}
         """By line, in the order in which they stand; of a line the first alone."""
 
@@ -88,6 +89,10 @@ class WatchedBody(MethodBody):
 
     def __setitem__(self, name: str, value: Any) -> None:
         is_new = name not in self
+        if isinstance(value, TakenLine) and any(_failed_in(value.parts(self))):
+            self.unnamed = [said for said in self.unnamed if said is not value]
+            dict.__setitem__(self, name, _Failed("_"))
+            return
         try:
             super().__setitem__(name, value)
             if isinstance(value, ComputedLine | PointsLine):
@@ -123,6 +128,22 @@ def told_together(word: Callable[P, T]) -> Callable[P, T]:
             return cast(T, body.failed(error, sys._getframe(1).f_lineno))
 
     return said
+
+
+def current() -> MethodBody:
+    """The body of the method which is being declared."""
+    body = CURRENT.get()
+    if body is None:
+        raise SheetError("sums, counts and plots stand in the body of a class of Method")
+    return body
+
+
+def named_next(line: Declaration | FitLine) -> Any:
+    """What a line declares; the name comes with the assignment, and must come."""
+    body = CURRENT.get()
+    if body is not None:
+        body.unnamed.append(line)
+    return line
 
 
 def _failed_in(value: Any) -> Iterator[_Failed]:

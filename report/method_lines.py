@@ -13,6 +13,7 @@ from sympy.core.relational import Relational
 
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
+from ..derivations.vocabulary import Quantity
 from .column import Limit, SheetError
 from .quantity import Bounds, behind
 
@@ -23,6 +24,7 @@ __all__ = [
     "FitLine",
     "InputLine",
     "PointsLine",
+    "TakenLine",
     "UnknownLine",
     "exact",
     "in_si",
@@ -62,17 +64,36 @@ class Declaration:
             )
 
 
+class TakenLine(Declaration):
+    """What puts a column of its own into a body."""
+
+    def parts(self, body: Any) -> tuple[Any, ...]:
+        """The formulas that it is made of."""
+        return ()
+
+    def declare(self, body: Any, name: str) -> Expr:
+        """Do so; what the name then stands for."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
 class InputLine(Declaration):
-    """What is given or measured."""
+    """What is given or measured; a word of a ledger may stand in the place of the unit."""
 
     bounds: Bounds = field(default_factory=Bounds)
     default: str | None = None
     is_measured: bool = False
     example: str = ""
     is_constant: bool = False
+    optional: bool = False
+    otherwise: Any = None  # what it is where it is left out
+    asked: str = ""  # what who gives it is told it is
+    quantity: Quantity | None = field(default=None, init=False)  # of a ledger, in the place of a unit
 
     def __post_init__(self) -> None:
+        if isinstance(self.unit, Quantity):
+            object.__setattr__(self, "quantity", self.unit)
+            object.__setattr__(self, "unit", self.unit.unit)
         super().__post_init__()
         if not self.unit.strip():
             object.__setattr__(self, "unit", "1")
@@ -114,6 +135,7 @@ class UnknownLine(Declaration):
 
     start: Expr | None = None
     bounds: Bounds = field(default_factory=Bounds)
+    of: Any = None  # a column of whose rows there is one of each
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ..derivations.equation import Ledger
 from ..derivations.vocabulary import Quantity, Vocabulary, spelt
@@ -33,7 +34,9 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     return Quantity(*own, bool(column.positive), "", *known)
 
 
-def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: Sequence[str]) -> Workbook:
+def workbook_of(
+    name: str, body: MethodBody, title: str, source: str, headline: Sequence[str], prose: str
+) -> Workbook:
     """All that it declares.
 
     Parameters
@@ -53,7 +56,7 @@ def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: 
             raise SheetError(
                 f"{announced} is announced as unknown, and neither a root nor a fit finds it", announced
             )
-    if not entries:
+    if not entries and body.ledger is None:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
     columns = body.whole
     sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
@@ -64,6 +67,7 @@ def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: 
     bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
     limited = (one for one, said in bounds.items() if (said.low, said.high) != (None, None))
     words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
+    taken = body.ledger or Ledger((), vocabulary=words)
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
@@ -74,10 +78,11 @@ def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: 
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
         source=source,
-        ledger=lambda: Ledger(entries, vocabulary=words),
+        ledger=lambda: replace(taken, entries=(*taken.entries, *entries)),
         measured=columns_of,
         parameters=given_to,
-        sheet=lambda names: Sheet(columns),
+        sheet=lambda names: body.optional.sheet(columns, names),
+        either=tuple(body.optional.either),
         headline=tuple(headline) or tuple(last),
         row=body.axis.row,
         least=1,
@@ -86,7 +91,8 @@ def workbook_of(name: str, body: MethodBody, title: str, source: str, headline: 
         constants=frozenset(body.constants),
         margins=body.margins,
         aside=frozenset(body.aside),
-        tables=(*body.tables, *tables_of(sheet, in_tables)) if body.tables else (),
+        tables=(*body.tables, *(tables_of(sheet, in_tables) if body.tables and not prose else ())),
+        prose=prose or "generic",
         figures=tuple(body.figures),
         drawn=(lambda sheet: curves) if curves.columns else None,
         groups=belonging,

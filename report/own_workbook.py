@@ -68,7 +68,8 @@ def own_workbook(path: Path, code: bytes) -> Workbook:
         found,
         ledger=ledger,
         sheet=own.guarded("what sheet() returns", found.sheet),
-        check_parameters=own.guarded("what check_parameters() returns", found.check_parameters, str | None),
+        check_parameters=found.check_parameters
+        and own.guarded("what check_parameters() returns", found.check_parameters, str | None),
         drawn=found.drawn and own.guarded("what drawn() returns", found.drawn),
         drawings=found.drawings and drawings,
     )

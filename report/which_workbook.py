@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 import importlib
+import sys
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .kept_workbook import known_workbook
 from .messages.errors import ForeignCode, UnknownWorkbook
 from .own_workbook import own_workbook
+from .partly import is_partly
 from .workbooks import SHIPPED
 
 if TYPE_CHECKING:
     from .workbook import Workbook
 
 __all__ = ["find_workbook", "is_shipped", "shipped_workbook"]
+
+
+def _imported(name: str) -> Workbook:
+    workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
+    return workbook
+
+
+@cache
+def _known(name: str) -> Workbook:
+    return known_workbook(name, partial(_imported, name))
 
 
 def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:
@@ -32,8 +46,7 @@ def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workboo
         The user's own workbook cannot be run, or declares none.
     """
     if name in SHIPPED:
-        workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK
-        return workbook
+        return _imported(name) if SHIPPED[name] in sys.modules else _known(name)
     if code is None:
         raise UnknownWorkbook([*SHIPPED, *sorted(p.name for p in folder.glob("*.py"))])
     return own_workbook(folder / name, code)
@@ -42,7 +55,7 @@ def find_workbook(name: str, folder: Path, code: bytes | None = None) -> Workboo
 def is_shipped(workbook: Workbook) -> bool:
     """Whether a workbook is a shipped one, and not somebody's own that is called as one is."""
     name = workbook.name
-    return name in SHIPPED and find_workbook(name, Path()) is workbook
+    return name in SHIPPED and (is_partly(workbook) or find_workbook(name, Path()) is workbook)
 
 
 def shipped_workbook(name: str, folder: Path, code: bytes | None = None) -> Workbook:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from .charts import Chart
 from .quantity import Bounds
 
 if TYPE_CHECKING:
@@ -14,13 +15,14 @@ if TYPE_CHECKING:
 
     from ..derivations.equation import Ledger
     from .axis import Axis
-    from .charts import Chart, Drawn
+    from .charts import Drawn
     from .column import Column
     from .sheet import Sheet
 
 __all__ = [
     "Curve",
     "Design",
+    "Either",
     "FigureSpec",
     "Measured",
     "Parameter",
@@ -59,6 +61,23 @@ class Parameter:
     """`name`, `unit`, `meaning` and `bounds`: as for :class:`Measured`."""
     default: str | None = None
     """The printed value with its unit that holds when it is left out; None: no default."""
+
+
+@dataclass(frozen=True)
+class Either:
+    """A parameter that may be left out, and what it is computed from then."""
+
+    name: str
+    meaning: str
+    instead: tuple[str, ...]
+
+    def wrong(self, given: Set[str]) -> str | None:
+        """What is missing or too much among the parameters that were given."""
+        if self.name in given and (twice := sorted({*self.instead} & given)):
+            return f"{self.name} and {' and '.join(twice)} say the same thing twice; keep one"
+        if self.name not in given and not given >= {*self.instead}:
+            return f"the {self.meaning} is missing: give {self.name}, or {' and '.join(self.instead)}"
+        return None
 
 
 @dataclass(frozen=True)
@@ -216,9 +235,11 @@ class Workbook:
     sheet: Callable[[frozenset[str]], Sheet]
     """Takes the names of the given parameters; returns the :class:`Sheet`. What is given gets the bounds
     there that `measured` and `parameters` declare."""
-    check_parameters: Callable[[frozenset[str]], str | None] = lambda given: None
+    check_parameters: Callable[[frozenset[str]], str | None] | None = None
     """Takes the names that were given; returns None or a sentence that says which combination is missing or
     contradictory."""
+    either: tuple[Either, ...] = ()
+    """Parameters in whose place others may be given: what of these is missing or too much is told, too."""
     headline: tuple[str, ...] = ()
     """The cells that are the result, first in every view."""
     row: str = "test"
@@ -279,6 +300,11 @@ class Workbook:
             return sheet.bounded(bounds)
 
         object.__setattr__(self, "sheet", cache(bounded))
+
+    def wrong(self, given: frozenset[str]) -> str | None:
+        """What is missing or contradictory among the parameters that were given; None if nothing is."""
+        own = () if self.check_parameters is None else (self.check_parameters(given),)
+        return next(filter(None, (*(each.wrong(given) for each in self.either), *own)), None)
 
     @property
     def charts(self) -> tuple[Chart, ...]:

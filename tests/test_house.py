@@ -53,6 +53,10 @@ def rooms(*names: str) -> set[str]:
 AUTHOR = PROVER | rooms("messages", "laws", "distribution", "quantity", "axis", "column", "named", "partly")
 AUTHOR |= rooms("sheet", "charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
+# The words of methods, and what is made of their lines.
+METHOD = rooms(*("algebra", "body", "errors", "ledger", "lines", "made", "places", "shown"))
+METHOD = {each.replace("report.", "report.method_") for each in METHOD}
+METHOD |= rooms("codata", "differences", "fitted", "method")
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "": ({"derivations", "report"}, set()),
@@ -134,7 +138,11 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         ),
         RUNTIME - {"scipy", "mpmath"},
     ),
-    "report.workbooks": (DECLARED | rooms("judge", "result", "workbooks") | {"derivations"}, ALGEBRA),
+    **dict.fromkeys(METHOD, (DECLARED | METHOD | {"derivations"}, ALGEBRA | {"scipy"})),
+    "report.workbooks": (
+        DECLARED | METHOD | rooms("judge", "result", "workbooks") | {"derivations"},
+        ALGEBRA,
+    ),
     "report.workbooks.soft_impact_schematics": (
         DECLARED | rooms("engines.numpy_code", "result", "views.drawing", "workbooks") | {"derivations"},
         {"matplotlib", "numpy", "sympy"},

@@ -19,7 +19,7 @@ from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
-from loopsheet.report.workbooks.soft_impact_limits import APART, NEAR
+from loopsheet.report.workbooks.soft_impact import APART, NEAR
 
 HEIGHTS: Texts = {
     "v": ("2.200", "2.222", "3.100", "3.131", "4.300", "4.343"),

@@ -380,7 +380,7 @@ class _Reader:
         above = self.toml.data
         misspelt = "parameters" not in above and any(close(word, ["parameters"]) for word in above)
         if len(self.findings.found) == before and isinstance(data, dict) and not misspelt:
-            sentence = self.workbook.check_parameters(given)
+            sentence = self.workbook.wrong(given)
             if sentence:
                 known = f"the parameters are {', '.join(declared)}"
                 self.findings.add("LS209", self.toml.key("parameters"), reason=sentence, known=known)

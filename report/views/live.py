@@ -280,7 +280,7 @@ def _given(report: Report, column: Column) -> dict[str, Any]:
 def limits(bounds: Bounds) -> dict[str, Any]:
     """What an input may be, as the page reads it: ends as text, which its fractions hold exactly."""
     return {
-        name: repr(bound) if name in ("low", "high") else True
+        name: repr(bound).removesuffix(".0") if name in ("low", "high") else True
         for name in ("low", "high", "low_open", "high_open", "integer")
         if (bound := getattr(bounds, name)) is not None and bound is not False
     }
