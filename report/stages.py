@@ -101,7 +101,12 @@ def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
 
         refusals.refuse_what_is_misnamed(sheet, inputs, narratives(), lambda: _drawings(inputs))
     refusals.refuse_what_is_missing(sheet, inputs)
-    return Prepared(inputs, sheet)
+    made = Prepared(inputs, sheet)
+    if inputs.workbook.curves and sheet.loops:
+        from .fitting.starts import begun
+
+        made = replace(made, sheet=begun(sheet, inputs.workbook.curves, made.labels, made.data))
+    return made
 
 
 def _refuse_other_dimensions(sheet: Sheet) -> None:

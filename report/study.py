@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -184,8 +184,11 @@ class Study:
     @_part("page program")
     def program(self) -> str:
         """The sheet as the page's program: of the columns, whatever numbers are given for them."""
+        sheet, curves = self.prepared.sheet, self.inputs.workbook.curves
+        begun = [sheet[name].content for curve in curves for name in curve.fitted]  # it may hang on the data
         given = " ".join(sorted(self.inputs.given))
-        return self.kept("page program", lambda: stages.program(self.computed), given, by="workbook")
+        make = partial(stages.program, self.computed)
+        return self.kept("page program", make, given, *begun, by="workbook")
 
     @_part("judge of the engines")
     def engines(self) -> tuple[Agreement, ...]:

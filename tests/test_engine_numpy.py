@@ -419,3 +419,13 @@ def test_what_results_cannot_go_to_is_refused(name: str, array: Any, said: str) 
             SHEET, TESTS, {**uncertain({**PAPER, **PARAMETERS}), "v": READ}, PROGRAM, {name: array}
         )
     np.testing.assert_array_equal(READ, before)
+
+
+def test_one_of_several_whole_numbers_is_a_number_as_others_are() -> None:
+    """A block of a batch in which all rows have that one does not make whole numbers of the others."""
+    of_x = Piecewise((1, x > 2), (Rational(2, 5), True))
+    part = Column("part", None, Formula(Equation("(1)", (Symbol("part"), of_x), "")), positive=False)
+    sheet = Sheet((Column("x", None, Given()), part))
+    for data in ([[3.0]], [[3.0], [1.0]]):
+        values = engine.evaluate(sheet, {}, {"x": np.array(data)})
+        assert values.value["part"].dtype == np.float64

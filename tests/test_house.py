@@ -97,10 +97,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.engines": (DECLARED | rooms("engines", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
-    "report.fitting": (
-        rooms("axis", "column", "engines.kernels", "engines.numpy_code", "fitting"),
-        {"numpy", "sympy"},
-    ),
+    "report.fitting": (DECLARED | rooms("engines", "fitting"), {"numpy", "sympy"}),
     "report.result": (
         DECLARED | rooms("engines.exact", "files", "inputs", "result"),
         {"mpmath", "msgspec", "numpy"},

@@ -188,6 +188,8 @@ class Values:
     for none."""
     words: Mapping[str, Mapping[tuple[int, ...], str]] = field(default_factory=dict)
     """What the rows of an axis are known by besides their numbers, by its name and their labels."""
+    passes: Mapping[str, int] = field(default_factory=dict)
+    """How many passes each loop took, by its name."""
 
     @property
     def plain(self) -> tuple[Any, ...]:

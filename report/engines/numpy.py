@@ -261,13 +261,15 @@ class _Run:
         """The columns of which some cell is in error."""
         self.masks: dict[str, Masks] = {}
         self.parts: dict[str, Array] = {}
+        self.passes = dict(known.passes) if known else {}
 
     def values(self) -> Values:
         with np.errstate(all="ignore"):
             self.program.function(self)
         return Values(
-            self.sheet, self.laid.layouts, self.value, self.status, self.roots, self.counted, self.broken
-        )
+            self.sheet, self.laid.layouts, self.value, self.status, self.roots, self.counted, self.broken,
+            passes=self.passes,
+        )  # fmt: skip
 
     # --- rows
 
@@ -327,10 +329,11 @@ class _Run:
         """A column by its formula, and whether its conditions hold."""
         column = self.sheet[name]
         size = self.laid.size(column)
-        shape = np.shape(value)
+        value = np.asarray(value, dtype=np.float64)  # one of several whole numbers is a number, too
+        shape = value.shape
         if requires or not shape or shape[-1] != size:
             shape = np.broadcast_shapes(shape, (size,), *map(np.shape, requires))
-            value = np.broadcast_to(np.asarray(value, dtype=np.float64), shape).copy()
+            value = np.broadcast_to(value, shape).copy()
         if not self._odd(name) and _held(value, column.positive).all() and all(map(np.all, requires)):
             if requires:
                 self.broken[name] = np.zeros(shape, dtype=np.uint8)
@@ -369,6 +372,7 @@ class _Run:
             self._again(program)
             settling.after(before, self.value, self.status)
             self._put(settling.values, begun)
+        self.passes[name] = settling.passes
         if settling.failed.any():
             self._put(settling.values, settling.statuses)
         values, statuses = dict(settling.values), {each: self.status[each] for each in program.iterated}

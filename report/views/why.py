@@ -202,11 +202,11 @@ def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
     scatter = f"{curve.scatter} = {report.text(values.cell(curve.scatter))}"
     yield _line("fitted", f"to {curve.observed} of {number}{found}, by least squares; {scatter}")
     if isinstance(column.rule, Iterated):
-        start = column.rule.start
-        at = Wording(report.ledger.vocabulary).text(start)
-        if start.is_number:
-            at = f"{report.shown[column.name].of(float(start)):.15g}{_unit(report, column.name)}"
-        yield _line("begun", f"at {at}")
+        start, said = column.rule.start, report.workbook.sheet(inputs.given)[column.name].rule
+        yield _line("begun", f"at {_place(report, column, start)}")
+        if isinstance(said, Iterated) and said.start != start:
+            stated = _place(report, column, said.start)
+            yield _line("", f"from {stated}, as is stated, its passes lead nowhere, or there too slowly")
     for proof in (proof for proof in report.proofs if proof.equation.label in curve.slopes):
         yield _line("proof", f"{proof.equation.label} {proof.equation.title}: {proof.status.value}")
     lost = (
@@ -217,6 +217,13 @@ def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
     gone = {each.test: each.reason for each in inputs.left_out}
     for test, reason in (*lost.items(), *gone.items()):
         yield _line("left out", f"{row} {inputs.called(test)}: {reason}")
+
+
+def _place(report: Report, column: Column, start: Expr) -> str:
+    """Where a parameter is sought from, in its unit if that is a number."""
+    if not start.is_number:
+        return Wording(report.ledger.vocabulary).text(start)
+    return f"{report.shown[column.name].of(float(start)):.15g}{_unit(report, column.name)}"
 
 
 def _number(value: float) -> str:
