@@ -20,15 +20,16 @@ __all__ = [
     "CHECKED",
     "FIRST_ROW",
     "SCALARS",
+    "SLOPES",
     "STEPS",
     "CellBlock",
     "FilledDown",
     "Grid",
     "Grouped",
     "Place",
+    "Product",
     "as_issued",
     "checked",
-    "every_row",
     "factors",
     "letters",
 ]
@@ -41,6 +42,8 @@ CHECKED = 6
 """Its column, from 0, of what is given where it is allowed."""
 STEPS = "steps"
 """The worksheet of the steps to a scalar root."""
+SLOPES = "derivatives"
+"""The worksheet of derivatives that are one number."""
 
 
 _READ = 15
@@ -152,11 +155,6 @@ class Place:
         return "" if seen_from == self.worksheet else f"{quoted(self.worksheet)}!"
 
 
-def every_row(name: str) -> str:
-    """What all cells of a given column together are called, by which something is differentiated."""
-    return f"{name} of all rows"
-
-
 def quoted(worksheet: str) -> str:
     """A worksheet's name as formulas write it; in quotes if it could be read as something else.
 
@@ -185,6 +183,17 @@ class Grouped(NamedTuple):
     def same(own: str, group: str) -> str:
         """The formula, without its equals sign, that says whether two cells hold the same word."""
         return f"EXACT({own},{group})"
+
+
+class Product(NamedTuple):
+    """What is added to the derivative of a result by a given cell: one block, or two."""
+
+    first: str
+    """The block whose row is that of the result, or of the given cell if there is no other."""
+    then: str = ""
+    """The block whose row is that of the given cell."""
+    named: str | None = None
+    """Of a column of results, how the row of one names the given cell; empty for the same row."""
 
 
 class FilledDown(NamedTuple):
@@ -221,7 +230,8 @@ class CellBlock:
     kind: str
     """``index`` (the numbers of rows), ``given``, ``checked`` (what is given, if it is allowed),
     ``computed``, ``carried`` (another axis' cells, repeated on this one), ``step`` (on the way to a root),
-    ``margin`` (how far inside of a limit another's cells lie) or ``drawn`` (for a chart)."""
+    ``margin`` (how far inside of a limit another's cells lie), ``drawn`` (for a chart) or ``slope`` (a
+    derivative of a result, or what is needed for it)."""
     title: str
     meaning: str
     """`title` and `meaning`: what stands above or beside its cells."""
@@ -272,10 +282,9 @@ class Grid:
     beside groups."""
     groups: Mapping[str, tuple[Grouped, ...]] = field(default_factory=dict)
     """By worksheet name; how rows that stand in groups are held to their words."""
-    slopes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    """By the name of a result, by that of what is given: the formula of its derivative in SI, without its
-    equals sign; of a given column with rows, by the cell of the row ``{row}``, and by :func:`every_row`.
-    Nothing where there is no formula."""
+    slopes: Mapping[str, Mapping[str, tuple[Product, ...]]] = field(default_factory=dict)
+    """By the name of a result, by that of what is given: the products of blocks, in SI, whose sum its
+    derivative is. Nothing where there are no formulas."""
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

@@ -17,6 +17,7 @@ from ..cells.grid import (
     CHECKED,
     FIRST_ROW,
     SCALARS,
+    SLOPES,
     STEPS,
     CellBlock,
     FilledDown,
@@ -39,7 +40,7 @@ from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, guard
 from .excel_loops import passes_of
 from .excel_roots import Unrolled, unroll
-from .excel_slopes import slopes
+from .excel_slopes import Slopes
 from .numpy_texts import program_texts
 
 __all__ = ["Assembly", "auxiliary_texts"]
@@ -113,11 +114,19 @@ class Assembly:
     def told(self) -> dict[str, Any]:
         """All of it but the values, as data."""
         self.put_all()
+        derived = Slopes(self.sheet, self.first)
+        steps = {
+            name: self.places[[c.name for c in each.cells if c.name.startswith(f"{name}.u_")][-1]]
+            for name, each in self.unrolled.items()
+        }
+        self.places |= derived.put(lambda axis: self.rooms[axis].next(), steps)
         named = {name: self.places[checked(name)] for name in self.whole.bounds}
         places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
         formulas = Formulas(self.whole, self.plan, self.layouts, places)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
-        order = [SCALARS, *self.names.values(), STEPS]
+        slopes = derived.told(formulas)
+        blocks += derived.blocks
+        order = [SCALARS, *self.names.values(), STEPS, SLOPES]
         blocks.sort(
             key=lambda b: (
                 order.index(b.place.worksheet),
@@ -132,7 +141,7 @@ class Assembly:
             "notes": as_data(self.notes),
             "words": as_data(self.words),
             "groups": as_data(self.groups),
-            "slopes": {name: slopes(formulas, self.sheet[name]) for name in self.first if name in self.sheet},
+            "slopes": slopes,
         }
 
     # --- places

@@ -7,21 +7,21 @@ from dataclasses import replace
 from itertools import chain, count
 from typing import Any
 
-from ..cells.grid import SCALARS, STEPS, CellBlock, Grid, Grouped, Place
+from ..cells.grid import SCALARS, SLOPES, STEPS, CellBlock, Grid, Grouped, Place, Product
 from ..cells.layout import Layout
 from ..cells.values import Values
 from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, MemberAxis, Sheet
 from .excel_loops import pass_columns, passes_of
-from .excel_values import filled
+from .excel_values import filled, slope_values
 from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_passes"]
 
 MOST_ROWS = 40_000
 """Rows of a worksheet; a million would fit, but these take half a gigabyte to make, and more to open."""
-_RESERVED = (SCALARS, STEPS, "figures", "published", "equations", "history")
+_RESERVED = (SCALARS, STEPS, SLOPES, "figures", "published", "equations", "history")
 """Worksheets that are there already, and one that Excel keeps for itself."""
 _LONGEST_NAME = 31
 """Characters of a worksheet's name."""
@@ -89,11 +89,13 @@ def grid(
     hangs_on = repr((names, own, words, sizes))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
-    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every)
+    slopes = slope_values(values, sheet, told["slopes"])
+    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every, slopes)
     notes = of_data(told["notes"], dict[str, Place])
     beside = of_data(told["words"], dict[str, tuple[Place, ...]])
+    ways = of_data(told["slopes"]["ways"], dict[str, dict[str, tuple[Product, ...]]])
     groups = of_data(told["groups"], dict[str, tuple[Grouped, ...]])
-    return Grid(tuple(blocks), axes, drawn, notes, beside, groups, told["slopes"])
+    return Grid(tuple(blocks), axes, drawn, notes, beside, groups, ways)
 
 
 def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

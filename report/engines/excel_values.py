@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal
@@ -13,10 +14,15 @@ from numpy.typing import NDArray
 from ..cells.grid import CellBlock, FilledDown, Place
 from ..cells.layout import evenly, precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
+from ..plan.adjoints import Adjoint, Term
+from ..plan.kept import of_data
+from ..plan.slopes import Local, with_unknowns
+from ..sheet import Sheet
 from .kernels import Array
 from .numpy import Program, parts
+from .numpy_adjoints import computed
 
-__all__ = ["READY", "NotPrintable", "auxiliary_values", "filled"]
+__all__ = ["READY", "NotPrintable", "auxiliary_values", "filled", "slope_values"]
 
 READY = "ready"
 """What the first cell says where all precedents have values."""
@@ -27,12 +33,15 @@ class NotPrintable(ValueError):
 
 
 def filled(
-    blocks: Iterable[CellBlock], roots: Iterable[Mapping[str, Any]], values: Values
+    blocks: Iterable[CellBlock],
+    roots: Iterable[Mapping[str, Any]],
+    values: Values,
+    slopes: Mapping[str, Array],
 ) -> Iterator[CellBlock]:
     """The blocks of a grid with what they show.
 
     `roots`: from :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`. `values`: all columns,
-    computed, without a batch.
+    computed, without a batch. `slopes`: from :func:`slope_values`.
     """
     found = {name: cells for root in roots for name, cells in auxiliary_values(values, root).items()}
     for block in blocks:
@@ -40,6 +49,10 @@ def filled(
         if what == "labels":
             labels = values.layouts[name].labels[:, int(more[0])]
             shown: tuple[float | str | None, ...] = tuple(map(float, labels))
+        elif what == "slope":
+            # As many digits as every spreadsheet reads.
+            numbers = (float(f"{number:.15g}") + 0.0 for number in slopes[name].tolist())
+            shown = tuple(number if math.isfinite(number) else None for number in numbers)
         else:
             shown = found[name] if what.endswith("cell") else _cells(values, name, block.place)
         if what == "drawn":
@@ -89,6 +102,24 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     shown |= {name: _shown(cells[name], alone if single else ready) for name, _, single in root["cells"]}
     check = (READY if code == Status.OK else CODES[Status(int(code))] for code in codes)
     return shown | {root["check"]: tuple(check)}
+
+
+def slope_values(values: Values, sheet: Sheet, told: Mapping[str, Any]) -> dict[str, Array]:
+    """The values of all derivatives of results, by name.
+
+    `sheet`: of the report. `told`: from :meth:`~loopsheet.report.engines.excel_slopes.Slopes.told`.
+    """
+    program = Program.of_texts(with_unknowns(sheet, told["again"]), told["program"])
+    found = parts(program, values)
+    nodes = {node.name: node for node in of_data(told["nodes"], tuple[Local, ...])}
+    held = {name: found[part] for name, part in told["held"].items()}
+    terms = of_data(told["spread"], dict[str, Term])
+    spread = [
+        Adjoint(name, "", "", term.rows, (replace(term, factors=(name,), by="", group=None),))
+        for name, term in terms.items()
+    ]
+    quantities = of_data(told["quantities"], tuple[Adjoint, ...])
+    return held | computed([*spread, *quantities], nodes, found, values)
 
 
 def _shown(numbers: Array, wanted: NDArray[np.bool_]) -> tuple[float | str, ...]:

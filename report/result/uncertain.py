@@ -144,6 +144,10 @@ class Budget:
     """So many told its distribution and the coverage factor; 0 where the errors' own did."""
     least: float = -math.inf
     """What the quantity cannot fall below, in SI."""
+    idle: tuple[Contribution, ...] = ()
+    """The other sources, which do nothing at these values."""
+    tied: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """By (str, str); correlations with these."""
 
     @property
     def estimates(self) -> list[list[Contribution]]:

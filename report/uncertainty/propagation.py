@@ -252,12 +252,21 @@ class Spread:
             if abs(own[n]) > NOTHING * np.abs(own).max()
         ]
         told = tuple(self._contribution(n, float(own[n]), float(shares[n])) for n in order)
-        pairs = {
-            (self.sources[a].name, self.sources[b].name): r for a, b, r in self._pairs if {a, b} <= set(order)
-        }
-        known = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
+        known = set(order)
+        idle = tuple(self._contribution(n, 0.0, 0.0) for n in range(len(self.sources)) if n not in known)
+        pairs, tied = (
+            {
+                (self.sources[a].name, self.sources[b].name): r
+                for a, b, r in self._pairs
+                if ({a, b} <= known) is alone
+            }
+            for alone in (True, False)
+        )
+        own_parts = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         summed, least = tuple(self._summed(column)), _least(column)
-        return Budget(self.values.address(name, row), name, label, *known, summed, least=least)
+        return Budget(
+            self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
+        )
 
     def _summed(self, column: Column) -> Iterator[Together]:
         """The columns over pairs of rows that a column sums, of the rows that it sums."""

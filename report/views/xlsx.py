@@ -14,7 +14,7 @@ from typing import Any
 
 from xlsxwriter import Workbook as Book
 
-from ..cells.grid import SCALARS, STEPS, Grid
+from ..cells.grid import SCALARS, SLOPES, STEPS, Grid
 from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
@@ -26,7 +26,7 @@ from .xlsx_inputs import GivenCells
 from .xlsx_marks import mark_outside
 from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
-from .xlsx_tables import write_axis, write_steps
+from .xlsx_tables import write_axis, write_slopes, write_steps
 
 __all__ = ["render", "write"]
 
@@ -67,6 +67,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
     names += [_UNCERTAINTY] if any(budget.u > 0 for budget in report.uncertain().budgets) else []
+    names += [SLOPES] if grid.on(SLOPES) else []
     names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}
     write_report(sheets[SCALARS], style, report, grid, inputs)
@@ -78,6 +79,8 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
         write_published(sheets[_PUBLISHED], style, report, grid)
     if _UNCERTAINTY in sheets:
         write_budgets(sheets[_UNCERTAINTY], style, report, grid)
+    if SLOPES in sheets:
+        write_slopes(sheets[SLOPES], style, grid)
     if _CARDS in sheets:
         write_cards(sheets[_CARDS], style, report.cards())
     write_equations(sheets[_EQUATIONS], style, report)

@@ -1,21 +1,21 @@
 """The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
 
 Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
-How readings scatter and what is a share of a number follow those cells, too, as do sensitivities through
-formulas and means; through roots and fits they are numbers as issued, for a spreadsheet has no derivatives.
-So is what is told of a sum of errors that are not all normal, for it does not convolve. Where sources were
-edited it says what it takes.
+How readings scatter and what is a share of a number follow those cells, too, as do sensitivities, which are
+made of derivatives that have cells of their own. What is told of a sum of errors that are not all normal
+stays as issued, for a spreadsheet does not convolve. Where sources were edited it says what it takes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
-from ..cells.grid import CellBlock, Grid, checked, every_row, factors
+from ..cells.grid import CellBlock, Grid, Product, checked, factors
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
@@ -83,8 +83,11 @@ class _Written:
         self.scale = float(self.block.place.scale)
         self.top = row
         self.first = row + 2
-        self.last = self.first + len(budget.contributions) - 1
-        self.rows = {each.source.name: self.first + n for n, each in enumerate(budget.contributions)}
+        self.lines = [*budget.contributions, *(each for each in budget.idle if self.slope(each.source))]
+        self.last = self.first + len(self.lines) - 1
+        self.rows = {each.source.name: self.first + n for n, each in enumerate(self.lines)}
+        every = {**budget.correlations, **budget.tied}
+        self.correlations = {pair: r for pair, r in every.items() if self.rows.keys() >= set(pair)}
 
     def write(self) -> int:
         """Write it; return the row behind it."""
@@ -95,9 +98,9 @@ class _Written:
             self.style.text(self.sheet, self.top, at, title, "section")
             self.style.text(self.sheet, self.top + 1, at, head, "head")
         self.sheet.set_row(self.top + 1, height([(head, width) for head, width in _COLUMNS], 2))
-        for row, each in enumerate(self.budget.contributions, start=self.first):
+        for row, each in enumerate(self.lines, start=self.first):
             self.source(row, each)
-        if self.budget.contributions:
+        if self.lines:
             self.sheet.conditional_format(self.first, 8, self.last, 8, _BARS)
         return self.result(self.last + 1)
 
@@ -123,34 +126,63 @@ class _Written:
             self.number(row, 3, size, u, number_format(report.sure(name, source.u)))
             form = style("number", number_format(rounded(contribution / u, 4)))
             if slope := self.slope(source):
-                style.formula(sheet, row, 6, slope, contribution / u, form, array="(IF(" in slope)
+                style.formula(sheet, row, 6, slope, contribution / u, form)
             else:
                 sheet.write_number(row, 6, contribution / u, form)
             form = number_format(rounded(contribution, 3))
             style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
-            sheet.write_number(row, 7, contribution, style("input", number_format(rounded(contribution, 3))))
+            self.number(row, 7, self.slope(source), contribution, number_format(rounded(contribution, 3)))
         formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
     def slope(self, source: ErrorSource) -> str:
-        """The formula of the sensitivity to an error, if there is one: by all cells that it moves."""
+        """The formula of the sensitivity to an error, if there is one: by all cells that it moves.
+
+        Of an error that is larger in one cell than in another, that of its contribution.
+        """
         by, (name, _, size), grid = self.grid.slopes.get(self.budget.name, {}), source.moves[0], self.grid
-        moved = {(own, row): u * size > 0 for own, row, u in source.moves}
-        if not all(own in by for own, _ in moved):
-            return ""
-        every = {(name, row) for row in range(grid[name].place.rows)}
-        if len(every) > 1 and moved.keys() == every and all(moved.values()):
-            told = by[every_row(name)]
+        ways = by.get(name, ())
+        every = range(grid[ways[0].first].place.rows) if ways else ()
+        if len(every) > 1 and self.axis is None and source.moves == tuple((name, row, size) for row in every):
+            told = f"SUM({grid[ways[0].first].place.range()})"
         else:
-            rows = (
-                (by[own].replace("{row}", str(grid[own].place.row + row + 1)), up)
-                for (own, row), up in moved.items()
-            )
-            terms = [f"{'+' if up else '-'}{text}" for text, up in rows]
-            told = f"({''.join(terms).removeprefix('+')})" if len(terms) > 1 else terms[0][1:]
-        unit = grid[name].place.scale / self.block.place.scale
-        return f"={told}{factors(unit)[0]}" if len(told) < _LONGEST else ""
+            terms = [
+                f"{'+' if u * size > 0 else '-'}{text}{'' if source.u else self.times(source, own, row, u)}"
+                for own, row, u in source.moves
+                for text in self.products(by.get(own, ()), row)
+            ]
+            told = "".join(terms).removeprefix("+")
+            told = f"({told})" if len(terms) > 1 or told.startswith("-") else told
+        unit = (grid[name].place.scale if source.u else 1) / self.block.place.scale
+        return f"={told}{factors(unit)[0]}" if 0 < len(told) < _LONGEST else ""
+
+    def times(self, source: ErrorSource, name: str, row: int, u: float) -> str:
+        """The factor that is a standard uncertainty in SI, of an error that is not as large in all cells."""
+        cell = self.grid[checked(name)].place.cell(row)
+        told = self.of_share(source, name, float(self.report.values.value[name][row]), u, cell)
+        unit = factors(self.grid[name].place.scale)[0]
+        return f"*({told}){unit}" if told else f"*{Decimal(repr(abs(u))):f}"
+
+    def products(self, ways: Sequence[Product], row: int) -> Iterator[str]:
+        """What is added to the derivative by a row of a given column."""
+        result = self.row_of_cell
+        for first, then, index in ways:
+            place = self.grid[first].place
+            if then:
+                yield f"{place.cell(result)}*{self.grid[then].place.cell(row)}"
+            elif self.axis is None:
+                yield place.cell(row)
+            else:
+                rows = self.report.values.layouts[self.axis].rows
+                if index is None or row == (rows[index][result] if index else result):
+                    yield place.cell(result)
+
+    @property
+    def axis(self) -> str | None:
+        """The rows of a column of results."""
+        axis = self.report.sheet[self.budget.name].axis
+        return None if axis is None else axis.name
 
     def number(self, row: int, column: int, formula: str, now: float, form: str) -> None:
         """A number that follows others; without a formula one that may be changed."""
@@ -165,14 +197,24 @@ class _Written:
 
     def size(self, row: int, each: Contribution) -> str:
         """The formula of a standard uncertainty of which a share of the estimate is a part; else nothing."""
-        source, block = each.source, self.grid[each.source.moves[0][0]]
-        place, said = block.place, self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
-        if not (said and said.parts[0].share and source.u and each.estimate is not None and not place.zero):
+        source = each.source
+        name, *_ = source.moves[0]
+        if not source.u or each.estimate is None:
             return ""
-        share, estimate = said.parts[0].share, abs(place.of(each.estimate))
-        fixed = source.u / float(place.scale) - share * estimate
+        told = self.of_share(source, name, each.estimate, source.u, f"B{row + 1}")
+        return told and f"={told}"
+
+    def of_share(self, source: ErrorSource, name: str, value: float, u: float, cell: str) -> str:
+        """The formula of a standard uncertainty in the unit of a cell, of which it is a share."""
+        block = self.grid[name]
+        place = block.place
+        said = self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
+        if not (said and said.parts[0].share and not place.zero):
+            return ""
+        share, estimate = said.parts[0].share, abs(place.of(value))
+        fixed = abs(u) / float(place.scale) - share * estimate
         more = f"{fixed:+.15g}" if abs(fixed) > _NONE * share * estimate else ""
-        return f"={share:.15g}*ABS(B{row + 1}){more}"
+        return f"{share:.15g}*ABS(N({cell})){more}"
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""
@@ -182,7 +224,7 @@ class _Written:
     def beside(self) -> Mapping[int, Sequence[tuple[int, str]]]:
         """The lines of what each line is correlated with, and the coefficients."""
         found: dict[int, list[tuple[int, str]]] = {}
-        for pair, r in self.budget.correlations.items():
+        for pair, r in self.correlations.items():
             first, second = (self.rows[name] for name in pair)
             told = self.coefficient(pair, r)
             found.setdefault(first, []).append((second, told))
@@ -276,7 +318,7 @@ class _Written:
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
-        samples = [each.source.sample for each in self.budget.contributions]
+        samples = [each.source.sample for each in self.lines]
         if not any(sample and samples.count(sample) > 1 for sample in samples):
             return f"SUMPRODUCT(({own})^4/({dof}))"
         self.style.text(self.sheet, self.top + 1, len(_COLUMNS), "estimate", "head")
@@ -297,12 +339,12 @@ class _Written:
         rows = self.rows
         return "".join(
             f"+2*({self.coefficient((one, other), r)})*H{rows[one] + 1}*H{rows[other] + 1}"
-            for (one, other), r in self.budget.correlations.items()
+            for (one, other), r in self.correlations.items()
         )
 
     def coefficient(self, pair: tuple[str, str], r: float) -> str:
         """A correlation coefficient; that of paired readings follows them."""
-        sources = [self.budget.contributions[self.rows[name] - self.first].source for name in pair]
+        sources = [self.lines[self.rows[name] - self.first].source for name in pair]
         if self.report.inputs.uncertainty.paired and all(each.said == SCATTER for each in sources):
             return f"CORREL({','.join(map(self.readings, sources))})"
         return f"{r:.15f}"
@@ -353,7 +395,8 @@ class _Written:
         if value.exponent and value.exponent < 0:
             over = f"*10^{-value.exponent}"
         parts = [f'TEXT({at[name]}{over},"{form}")' for name in ("value", "U")]
-        text = f'="("&{parts[0]}&" ± "&{parts[1]}&"){power}{unit}, k = "&TEXT({at["k"]},"0.00")'
+        text = f'"("&{parts[0]}&" ± "&{parts[1]}&"){power}{unit}, k = "&TEXT({at["k"]},"0.00")'
+        text = f"=IF(ISNUMBER({at['value']}),{text},{at['value']})"
         plain = [replace(number, exponent=None).plain for number in (value, expanded)]
         now = f"({plain[0]} ± {plain[1]}){power}{unit}, k = {budget.factor:.2f}"
         self.style.text(self.sheet, row, 0, "statement", "name")

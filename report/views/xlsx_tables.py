@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..cells.grid import FIRST_ROW, STEPS, CellBlock, Grid, Place, letters
+from ..cells.grid import FIRST_ROW, SLOPES, STEPS, CellBlock, Grid, Place, letters
 from ..result.result import Report
 from ..sheet import GroupAxis, RepeatAxis
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said, typical_format
 
-__all__ = ["mark_errors", "write_axis", "write_block", "write_steps"]
+__all__ = ["mark_errors", "write_axis", "write_block", "write_slopes", "write_steps"]
 
 _GROUP, _NAME, _MEANING, _SOURCE, _SYMBOL = range(FIRST_ROW - 5, FIRST_ROW)
 _WIDTH, _STEP_WIDTH, _INDEX_WIDTH, _NOTE_WIDTH = 15.0, 13.0, 9.0, 40.0
@@ -23,6 +23,7 @@ _GROUPS = {
     "drawn": "for the charts",
     "checked": "as checked",
     "carried": "of other worksheets",
+    "slope": "derivatives for the budgets, in SI",
 }
 
 
@@ -57,7 +58,7 @@ def write_block(
 def _number_formats(report: Report, block: CellBlock) -> Sequence[str]:
     """Of each cell that the report shows its own; else one for all; none of a step."""
     rows = block.place.rows
-    if block.kind == "step":
+    if block.kind in ("step", "slope"):
         return [""] * rows
     column = report.sheet.by_name.get(block.of or block.name)
     if column and block.kind in ("computed", "checked") and not isinstance(column.axis, RepeatAxis):
@@ -128,16 +129,16 @@ def mark_errors(
 def _width(block: CellBlock) -> float:
     if block.kind == "index":
         return max(_INDEX_WIDTH, 1.15 * len(block.title) + 2)
-    if block.kind == "step":
+    if block.kind in ("step", "slope"):
         return _STEP_WIDTH
     return max(_WIDTH, 1.15 * len(block.name) + 6)
 
 
 def _write_header(sheet: Any, style: Style, report: Report, block: CellBlock) -> None:
     at = block.place.column
-    options = {"level": 1} if block.kind in ("step", "carried", "checked") else {}
+    options = {"level": 1} if block.kind in ("step", "carried", "checked", "slope") else {}
     sheet.set_column(at, at, _width(block), None, options)
-    unit = said(block.unit) if block.kind not in ("index", "step") else ""
+    unit = said(block.unit) if block.kind not in ("index", "step", "slope") else ""
     style.text(sheet, _NAME, at, block.title + unit, "head")
     style.text(sheet, _MEANING, at, block.meaning, "meaning")
     column = report.sheet.by_name.get(block.name)
@@ -216,3 +217,21 @@ def write_steps(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     last = max(b.place.row for b in grid.on(STEPS))
     sheet.freeze_panes(0, 1)
     mark_errors(sheet, style, 0, 1, last, 1)
+
+
+# --- the derivatives that are one number --------------------------------------------------------------------
+
+
+def write_slopes(sheet: Any, style: Style, grid: Grid) -> None:
+    """Write the worksheet of derivatives of results that are one number."""
+    says = "In SI; those by rows stand behind the columns of their worksheets. The budgets multiply them."
+    style.page(sheet, "derivatives: how results follow what was given", says, [44, 17, 60])
+    for at, head in enumerate(("derivative", "value", "meaning")):
+        style.text(sheet, 3, at, head, "head")
+    for block in grid.on(SLOPES):
+        row, column = block.place.row, block.place.column
+        if column == 1:
+            style.text(sheet, row, 0, block.title, "name")
+            style.text(sheet, row, 2, block.meaning, "aside")
+        style.formula(sheet, row, column, block.formulas[0], block.values[0], style("step"), block.array)
+    sheet.freeze_panes(4, 1)

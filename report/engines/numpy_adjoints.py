@@ -1,0 +1,142 @@
+"""Adjoints as numbers: what the cells of a workbook show before a spreadsheet has recalculated them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cells.layout import precedents
+from ..cells.values import Status, Values, rows_kept
+from ..plan.adjoints import Adjoint, Share, Solution, Term
+from ..plan.order import places
+from ..plan.slopes import Local
+from .kernels import Array
+
+__all__ = ["computed"]
+
+
+def computed(
+    quantities: Iterable[Adjoint],
+    nodes: Mapping[str, Local],
+    parts: Mapping[str, Array],
+    values: Values,
+) -> dict[str, Array]:
+    """Compute adjoints.
+
+    Parameters
+    ----------
+    quantities : iterable of Adjoint
+        Each after those that it names.
+    nodes : mapping of str to Local
+        Totals by order of which a share is asked.
+    parts : mapping of str to array (rows,)
+        Of the derivatives.
+    values : Values
+        All columns, without a batch.
+
+    Returns
+    -------
+    mapping of str to array (rows,)
+        By the names of the quantities.
+    """
+    run = _Adding(nodes, parts, values)
+    with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+        for quantity in quantities:
+            run.found[quantity.name] = run.of(quantity)
+    return run.found
+
+
+class _Adding:
+    def __init__(self, nodes: Mapping[str, Local], parts: Mapping[str, Array], values: Values) -> None:
+        self.nodes, self.parts, self.values = nodes, parts, values
+        self.layouts = values.layouts
+        self.found: dict[str, Array] = {}
+        self.masks: dict[tuple[str, str], NDArray[np.bool_]] = {}
+
+    def size(self, axis: str | None) -> int:
+        return 1 if axis is None else self.layouts[axis].size
+
+    def of(self, quantity: Adjoint) -> Array:
+        if quantity.solved:
+            return self.solved(quantity.solved, self.size(quantity.axis))
+        if quantity.share:
+            return self.share(quantity.share)
+        found: Array = np.full(self.size(quantity.axis), quantity.plus)
+        for term in quantity.terms:
+            self.put(found, quantity, term)
+        return found
+
+    def put(self, found: Array, quantity: Adjoint, term: Term) -> None:
+        """Add a term."""
+        by = self.found[term.by] if term.by else np.ones(1)
+        if term.group is not None and term.rows is not None:
+            by = np.repeat(by, [rows.stop - rows.start for rows in self.layouts[term.rows].groups])
+        product = by * np.ones(self.size(term.rows))
+        for name in term.factors:
+            product = product * (self.found[name] if name in self.found else self.parts[name])
+        if term.of:
+            product = np.where(self.counts(term), product, 0.0)
+        if quantity.axis == term.rows:
+            found += product
+        elif quantity.axis is None:
+            found += product.sum()
+        else:
+            assert term.axis is not None
+            np.add.at(found, self.layouts[term.axis].rows[term.index or ""], product)
+
+    def counts(self, term: Term) -> NDArray[np.bool_]:
+        """The rows that count."""
+        if not term.over:
+            ok: NDArray[np.bool_] = self.values.status[term.of] == Status.OK
+            return ok
+        assert term.rows is not None
+        return self.kept(term.of, term.rows)
+
+    def kept(self, name: str, axis: str) -> NDArray[np.bool_]:
+        """The rows that the sums of a column take."""
+        if (name, axis) not in self.masks:
+            column = self.values.sheet[name]
+            named = precedents(self.values.sheet, self.layouts, column)
+            kept = rows_kept(named, self.layouts, self.values.status)
+            self.masks[name, axis] = kept.get(axis, np.ones(self.size(axis), dtype=bool))
+        return self.masks[name, axis]
+
+    def share(self, share: Share) -> Array:
+        """How much of the change of each row counts by its place: rows with one value share it."""
+        node = self.nodes[share.total]
+        assert node.over is not None
+        (slope,) = node.slopes
+        value = self.values.value[slope.by]
+        if slope.index is not None:
+            value = value[self.layouts[node.over].rows[slope.index]]
+        kept = self.kept(node.of, node.over)
+        if share.word == "value":
+            ordered = np.sort(value[kept])
+            return (
+                ordered[[places(node.word, ordered.size)[share.place]]]
+                if ordered.size
+                else np.full(1, np.nan)
+            )
+        if share.word == "number":
+            return np.array([np.sum(kept & (value == self.found[share.taken[0]]))], dtype=np.float64)
+        found: Array = np.zeros(value.shape)
+        for one, number in zip(share.taken[::2], share.taken[1::2], strict=True):
+            found += np.where(kept & (value == self.found[one]), 1 / self.found[number], 0.0)
+        return found / (len(share.taken) / 2)
+
+    def solved(self, solved: Solution, size: int) -> Array:
+        """A place in the solution, for each row."""
+        count = len(solved.right)
+        left, right = np.zeros((size, count, count)), np.zeros((size, count, 1))
+        for n, name in enumerate(solved.right):
+            right[:, n, 0] = self.found[name]
+            for m, value in enumerate(solved.matrix[n]):
+                left[:, m, n] = (n == m) - (self.found[value] if value else 0.0)
+        good = np.isfinite(left).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2))
+        found: Array = np.full(size, np.nan)
+        with suppress(np.linalg.LinAlgError):
+            found[good] = np.linalg.solve(left[good], right[good])[:, solved.place, 0]
+        return found

@@ -1,0 +1,273 @@
+"""Sensitivities of a delivered workbook after an edit: those of a report that is built again with it."""
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+import spreadsheets
+
+from loopsheet.report.inputs.folders import PAPER
+
+DATA = PAPER.parent
+NEAR = 1e-9
+
+
+class Case(NamedTuple):
+    """A folder, and the same with another number in it."""
+
+    files: Mapping[str, str]
+    before: str
+    after: str
+    """`before` and `after`: what stands in one of its files."""
+    edits: spreadsheets.Edits
+    """The same in the workbook."""
+
+
+def shipped(name: str, *parameters: str) -> dict[str, str]:
+    """The files of a shipped folder, with more parameters."""
+    found = {
+        path.name: path.read_text(encoding="utf-8")
+        for path in (DATA / name).iterdir()
+        if path.suffix in (".toml", ".csv", ".py")
+    }
+    more = "".join(f"{each}\n" for each in ("[parameters]", *parameters))
+    found["report.toml"] = found["report.toml"].replace("[parameters]\n", more, 1)
+    return found
+
+
+def method(body: str, table: str, parameters: str = "", sources: str = "") -> dict[str, str]:
+    """The files of a method of one's own."""
+    report = f'workbook = "workbook.py"\n[parameters]\n{parameters}[measurements]\nfile = "d.csv"\n'
+    return {"workbook.py": body, "d.csv": table, "report.toml": report + sources}
+
+
+SUMS = """from sympy import sqrt
+
+from loopsheet import Method, given, let, mean, measured, median, total
+
+
+class Sums(Method, headline="Q whole spread slope middle most"):
+    V = measured("mV", "a voltage", positive=True)
+    T = measured("K", "a temperature", positive=True)
+    h = given("mm", "a length", positive=True)
+    t = given("ms", "a time", positive=True)
+    V_0 = let(mean(V), "its mean")
+    G = let(sqrt(h) / t, "a gain")
+    Q = let(V_0**2 * G - V_0 * mean(V) * G / 3, "what is sought")
+    whole = let(Q / mean(T), "by kelvin")
+    spread = let(mean((V - V_0) ** 2), "a scatter")
+    slope = let(total((V - V_0) * (T - mean(T))) / total((T - mean(T)) ** 2), "a line's", "mV/K")
+    W = let(V**2 / T, "of each row")
+    middle = let(median(W), "that in the middle")
+    most = let(max(W) - min(W), "the range of them")
+"""
+VOLTAGES = "reading,V [mV],T [K]\n1,{},301.0\n2,52.0,304.5\n3,47.5,299.0\n4,50.25,300.0\n"
+STATED = 'h = "4.0 mm, u = 0.1"\nt = "2.50 ms, u = 0.02"\n'
+BATH = (
+    '[uncertainty]\nV = "u = 0.5"\nT = "u = 0.2"\n[uncertainty.shared.bath]\nof = "T"\nstated = "u = 0.3"\n'
+    '[uncertainty.shared.gain]\nof = "V"\nstated = "u = 0.1 % of reading"\n'
+)
+ROOTS = """from sympy import exp, log, pairs, sin
+
+from loopsheet import Method, given, let, mean, measured, root, total, unknown
+
+
+class Roots(Method, headline="level turned"):
+    e = measured("1", "eccentricity", low=0, high=0.9)
+    M = measured("1", "anomaly", low=0, high=3)
+    c = given("1", "a share", positive=True)
+    E = unknown()
+    E = root(E - e * sin(E), M, "eccentric anomaly", low=M - 1, high=M + 1, start=M, steps=20)
+    z = let(c * E / mean(M), "of each row")
+    level = let(mean(E**2), "mean square")
+    q = unknown()
+    q = root(q * exp(q), c * level, "by a root of one number", low=0, high=10, start=1)
+    turned = let(q / total(E * M), "what rests on both")
+""".replace("log, pairs, ", "")
+ORBITS = "reading,e [1],M [1]\n1,0.10,{}\n2,0.25,1.10\n3,0.40,1.90\n"
+BOTH = """from loopsheet import Method, fit, let, measured, unknown
+
+
+class Both(Method, headline="a b chi apart"):
+    x = measured("1", "abscissa")
+    y = measured("1", "ordinate")
+    a = unknown("offset")
+    b = unknown("slope")
+    line = fit(y, a + b * x, u={x: "stated", y: "stated"})
+    chi = let(line.S, "sum of squares")
+    apart = let(b * 2 - a, "of both")
+"""
+POINTS = "reading,x [1],y [1]\n1,0.0,{}\n2,0.9,5.4\n3,1.8,4.4\n4,2.6,4.6\n5,3.3,3.5\n6,4.4,3.7\n"
+FOUR = """from sympy import exp
+
+from loopsheet import Method, fit, let, measured, unknown
+
+
+class Four(Method, headline="a b c d half"):
+    x = measured("1", "abscissa")
+    y = measured("1", "ordinate")
+    a = unknown("height", start=1)
+    b = unknown("rate", start=1)
+    c = unknown("second height", start=2)
+    d = unknown("level", start=0.1)
+    curve = fit(y, a * exp(-b * x) + c * exp(-3 * b * x) + d)
+    half = let(a / (a + c), "a share")
+"""
+DECAY = "reading,x [1],y [1]\n" + "".join(
+    f"{n},{0.25 * n:.2f},{y}\n"
+    for n, y in enumerate(["{}", 2.21, 1.71, 1.33, 1.09, 0.90, 0.78, 0.66, 0.60, 0.53, 0.48], 1)
+)
+LINE = """from loopsheet import Method, fit, given, let, mean, measured, unknown
+
+
+class Line(Method, headline="level"):
+    x = measured("mm", "stated")
+    y = measured("V", "indicated")
+    a = unknown("offset")
+    b = unknown("slope")
+    line = fit(y, a + b * x)
+    f = given("1", "a factor")
+    reading = let(f * (y - a) / b, "what each row reads", "mm")
+    level = let(mean(reading), "mean of them")
+"""
+STEPS = "reading,x [mm],y [V]\n1,1.0,{}\n2,2.0,2.31\n3,3.0,3.29\n4,4.0,4.42\n"
+GROUPS = """from loopsheet import Method, count, given, groups, let, mean, measured, total
+
+
+class Groups(Method, headline="between within off"):
+    y = measured("mm", "reading")
+    zero = given("mm", "where they begin")
+    instrument = groups("instrument")
+    level = let(mean(y - zero, of=instrument), "mean of an instrument", "mm")
+    all_y = let(mean(y), "mean of all", like=y)
+    between = let(total(count(y, of=instrument) * (level - all_y) ** 2), "squares between", "mm^2")
+    within = let(total((y - level) ** 2), "squares within", "mm^2")
+    off = let(mean(y / level), "readings by their means")
+"""
+READINGS = "reading,instrument,y [mm]\n1,A,{}\n2,B,2.25\n3,A,1.75\n4,B,2.20\n5,A,1.62\n"
+SURE = {name: f'[uncertainty]\n{each}' for name, each in {
+    "ME": 'M = "u = 0.02"\ne = "u = 0.01"\n',
+    "xy": 'x = "u = 0.05"\ny = "u = 0.1"\n',
+    "y": 'y = "u = 0.01"\n',
+}.items()}  # fmt: skip
+VOLTS, SHARE = method(SUMS, VOLTAGES.format("48.0"), STATED, BATH), 'c = "1.20, u = 0.01"\n'
+ZERO = 'zero = "0.10 mm, u = 0.01"\n'
+CASES = {
+    "sums": Case(VOLTS, "1,48.0", "1,48.9", {("V", 0): 48.9}),
+    "sums of fewer": Case(VOLTS, "1,48.0", "1,", {("V", 0): None}),
+    "roots": Case(method(ROOTS, ORBITS.format("0.50"), SHARE, SURE["ME"]), "0.50", "0.90", {("M", 0): 0.9}),
+    "a fit of both": Case(
+        method(BOTH, POINTS.format("5.9"), "", SURE["xy"]), "0.0,5.9", "0.0,6.4", {("y", 0): 6.4}
+    ),
+    "a fit of four": Case(
+        method(FOUR, DECAY.format("2.93"), "", SURE["y"]), "0.25,2.93", "0.25,2.97", {("y", 0): 2.97}
+    ),
+    "readings of a line": Case(
+        method(LINE, STEPS.format("1.22"), 'f = "1.02, u = 0.01"\n', SURE["y"]),
+        "1.0,1.22", "1.0,1.37", {("y", 0): 1.37},
+    ),
+    "groups": Case(
+        method(GROUPS, READINGS.format("1.50"), ZERO, SURE["y"]), "A,1.50", "A,1.95", {("y", 0): 1.95}
+    ),
+    "gum_h1": Case(shipped("gum_h1"), '"-0.1 K', '"-0.7 K', {("theta", 0): -0.7}),
+}  # fmt: skip
+
+UNDECIDED = ("alpha_lin", "C_lin")
+"""Of the paper: their root is counted for the inputs as issued alone, and after an edit they say so."""
+CONVOLVED = ("coverage factor k", "expanded uncertainty U", "statement", "k comes from")
+"""What no spreadsheet tells of a sum of errors that are not all normal: it does not convolve, and says so."""
+SECOND = ("variance of second order", "standard uncertainty u", "all others together")
+"""What stays, or follows it, where terms of second order count: they are issued as a number."""
+
+
+class Office:
+    """All cases, before and after, and what LibreOffice makes of the edited ones."""
+
+    def __init__(self, soffice: str, folder: Path) -> None:
+        folders = {str(case.files): case.files for case in CASES.values()}
+        made = {key: self.made(folder / str(n), files) for n, (key, files) in enumerate(folders.items())}
+        self.before = {name: made[str(case.files)] for name, case in CASES.items()}
+        self.after = {name: self.made(folder / name, self.edited(case)) for name, case in CASES.items()}
+        books = {name: self.before[name].edited(case.edits) for name, case in CASES.items()}
+        self.read = spreadsheets.recalculate(soffice, folder, books)
+
+    @staticmethod
+    def edited(case: Case) -> dict[str, str]:
+        found = {name: text.replace(case.before, case.after, 1) for name, text in case.files.items()}
+        assert found != case.files
+        return found
+
+    @staticmethod
+    def made(folder: Path, files: Mapping[str, str]) -> spreadsheets.Delivered:
+        folder.mkdir()
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return spreadsheets.deliver(folder)
+
+
+@pytest.fixture(scope="module")
+def office(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Office:
+    return Office(require("soffice", "libreoffice"), tmp_path_factory.mktemp("office"))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_budget_follows_an_edit_as_a_rebuild_does(office: Office, name: str) -> None:
+    """Sensitivities, contributions and shares of every source, also of those that did nothing before."""
+    expected, stale = (
+        budgets(spreadsheets.cells_of(each[name].content)["uncertainty"])
+        for each in (office.after, office.before)
+    )
+    found, moved = budgets(office.read[name]["uncertainty"]), 0
+    assert expected.keys() == found.keys()
+    for result, lines in expected.items():
+        if result in UNDECIDED:
+            assert found[result]["statement", "B"] == "#UNDECIDED!"
+            continue
+        convolves = any(name == "k comes from" for name, _ in lines)
+        second = lines["variance of second order", "B"] != 0
+        for line, value in lines.items():
+            if (convolves and line[0] in CONVOLVED) or (second and line[1] in "BI"):
+                continue
+            again = found[result][line]
+            if isinstance(value, str):
+                assert again == value, (result, line)
+            else:
+                # What is exactly 0 in one may be rounding in the other.
+                least = 1e-12 * max(abs(v) for (_, c), v in lines.items() if c == line[1] and v != stays(v))
+                assert again == pytest.approx(value, rel=NEAR, abs=least), (result, line)
+                moved += line[1] == "G" and value != pytest.approx(stale[result][line], rel=1e-6)
+    assert moved > 3
+
+
+def stays(value: Any) -> Any:
+    """What is no number."""
+    return value if isinstance(value, str) else None
+
+
+def budgets(cells: Mapping[str, Any]) -> dict[str, dict[tuple[str, str], Any]]:
+    """What stands in each line of the budget of each result, by its name and the letter of the column."""
+    found: dict[str, dict[tuple[str, str], Any]] = {}
+    last = max(int(at[1:]) for at in cells if at.startswith("A"))
+    for row in range(4, last + 1):
+        said = str(cells.get(f"A{row}", ""))
+        if str(cells.get(f"A{row + 1}", "")) == "source":
+            own = found.setdefault(re.split(r"[ :]", said)[0], {})
+        elif said and said != "source":
+            own |= {(said, at): cells[f"{at}{row}"] for at in "BDFGHI" if f"{at}{row}" in cells}
+    return found
+
+
+@pytest.mark.parametrize("folder", ["gum_h1", "gum_h2", "gum_h3", "meyer"])
+def test_no_sensitivity_is_a_number_as_issued(folder: str) -> None:
+    delivered = spreadsheets.deliver(DATA / folder)
+    cells = spreadsheets.formulas_of(delivered.content).get("uncertainty", {})
+    for result, lines in budgets(cells).items():
+        numbers = {
+            line
+            for line, value in lines.items()
+            if line[1] in "GH" and not str(value).startswith(("=", "{="))
+        }
+        assert not numbers, result
+    assert "stay as issued" not in str(cells.get("A2", ""))
