@@ -73,7 +73,7 @@ def named(book: Any, name: str) -> list[Any]:
 def test_worksheets(book: Any) -> None:
     assert book.sheetnames == [
         "report", "figures", "tests", "pairs", "points", "loops", "bands", "steps", "published",
-        "uncertainty", "equations",
+        "uncertainty", "derivatives", "equations",
     ]  # fmt: skip
 
 
