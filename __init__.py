@@ -25,6 +25,7 @@ __all__ = [
     "points",
     "required",
     "root",
+    "rows",
     "sketch",
     "standing",
     "table",

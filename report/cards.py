@@ -153,10 +153,9 @@ def curve(report: Report) -> tuple[str, float, float]:
 
 def taken(report: Report, drops: Drops) -> tuple[str, ...]:
     """Which tests are in no card, and which curve is, if not the best."""
-    inputs = report.inputs
+    table = report.inputs.only
     found = [
-        f"{inputs.workbook.row} {inputs.called(inputs.tests[row])} is left out here: {why}"
-        for row, why in drops.aside
+        f"{table.row} {table.called(table.tests[row])} is left out here: {why}" for row, why in drops.aside
     ]
     better = [name for name, _ in _CURVES if name in report.sheet]
     name = curve(report)[0]

@@ -162,9 +162,10 @@ class Loaded(Mapping[str, Estimates]):
 
     def _called(self, column: Column, index: tuple[int, ...]) -> str:
         """A row by its number, with its name if it is one of the table of measurements."""
-        inputs = self._report.inputs
-        of_table = column.axis is not None and not column.axis.parents
-        return inputs.called(index[0]) if of_table else index_text(index)
+        axis = column.axis
+        if axis is None or not axis.is_given:
+            return index_text(index)
+        return self._report.inputs.on(axis.name).called(index[0])
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._report.sheet.by_name)

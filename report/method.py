@@ -13,28 +13,24 @@ sympy: what is measured for the cell of a row, what is computed for a row if its
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
 
 from sympy import Expr, false, sympify, true
 from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, StrictLessThan
 
-from ..derivations.equation import Ledger
 from ..derivations.reductions import Median
 from ..derivations.vocabulary import Quantity
 from . import method_algebra
 from .codata import adjusted
 from .column import SheetError
-from .method_body import MethodBody
-from .method_errors import CURRENT, WatchedBody, current, named_next, told_together
+from .method_class import Method
+from .method_errors import current, named_next, told_together
 from .method_ledger import by, expected, numbered, sketch, standing, uncertainty
 from .method_lines import ComputedLine, FitLine, InputLine, PointsLine, UnknownLine, exact
-from .method_made import workbook_of
 from .method_shown import plot, table
 from .named import name_of
 from .quantity import Bounds, behind
-from .workbook import Workbook
 
 __all__ = [
     "Method",
@@ -57,6 +53,7 @@ __all__ = [
     "points",
     "required",
     "root",
+    "rows",
     "sketch",
     "standing",
     "table",
@@ -158,12 +155,15 @@ def measured(
     exact: bool = False,
     latex: str = "",
     example: str = "",
+    of: Any = None,
 ) -> Any:
-    """Declare a column of the table of measurements; parameters as for :func:`given`."""
+    """Declare a column of the table of measurements; parameters as for :func:`given`.
+
+    `of`: in which of several tables it stands, what :func:`rows` returned; that of the class's rows, without.
+    """
     column = {"exact": exact, "latex": latex, "positive": positive}
-    said = InputLine(
-        meaning, cast(str, unit), column, _bounds(low, high, positive), is_measured=True, example=example
-    )
+    bounds = _bounds(low, high, positive)
+    said = InputLine(meaning, cast(str, unit), column, bounds, is_measured=True, of=of, example=example)
     return named_next(said)
 
 
@@ -419,6 +419,30 @@ def derivative(formula: Any, by: Any) -> Expr:
     return method_algebra.derivative(current(), exact(formula), exact(by))
 
 
+def rows(name: str, *, index: str = "", size: str = "") -> Any:
+    """Take the rows of a further table, which has a file of its own: ``samples = rows("samples")``.
+
+    ``A = measured("1", "signal", of=samples)`` is a column of it, and what names that has a value for each of
+    its rows. No formula names rows of two tables: what leads from one to the other is a mean, a sum or a fit
+    over the rows of one. In report.toml each table then has its place, ``[measurements.samples]``. Groups and
+    pairs are of the rows that stand behind ``(Method``.
+
+    Parameters
+    ----------
+    name : str
+        What its rows are called, ``samples``.
+    index, size : str
+        What the running number of a row is called in formulas, ``k_samples`` without, and how many there are,
+        ``n_samples``.
+
+    Raises
+    ------
+    SheetError
+        A name is taken, or no name.
+    """
+    return current().further(name, index or f"k_{name}", size or f"n_{name}")
+
+
 def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:
     """Take the rows that have one word in a column as a group: ``specimen = groups("specimen")``.
 
@@ -535,65 +559,3 @@ def _bounds(low: float | None, high: float | None, positive: bool, whole: bool =
             raise SheetError(f"low and high are numbers, in the unit that is declared, not {end!r}")
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)
-
-
-class _Declaring(type):
-    """Makes a workbook of the body of a class."""
-
-    workbook: Workbook
-
-    @classmethod
-    def __prepare__(
-        cls, name: str, bases: tuple[type, ...], /, *, rows: str = "readings",
-        index: str = "k", size: str = "n", **more: Any,
-    ) -> MethodBody:  # fmt: skip
-        body = WatchedBody(rows, index, size, more.get("ledger"))
-        if bases:
-            CURRENT.set(body)
-        if bases and bases != (Method,):
-            raise SheetError("a method is a class of Method alone")
-        return body
-
-    def __new__(
-        cls, name: str, bases: tuple[type, ...], body: Mapping[str, Any], /, *, source: str = "",
-        headline: str = "", rows: str = "", index: str = "", size: str = "",
-        ledger: Ledger | None = None, prose: str = "",
-    ) -> _Declaring:  # fmt: skip
-        """Take what the body declared; the first line of its docstring is the title.
-
-        Parameters
-        ----------
-        source : str
-            Where the method is published.
-        headline : str
-            The names of the results, first in every view: single numbers, and columns of groups, which have a
-            line for each group. Without, the parameters of fits, and else that of which nothing else is
-            computed.
-        rows, index, size : str
-            What the rows of the table of measurements are called, ``readings``, their running number in
-            formulas, ``k``, and how many there are, ``n``.
-        ledger : Ledger
-            The equations that :func:`by` takes, with their proofs and their vocabulary. It says which rows a
-            sum leaves out; elsewhere they follow from what results rest on.
-        prose : str
-            The narrative of the report, in templates/prose; it says itself which tables it shows.
-        """
-        found = super().__new__(cls, name, bases, dict(body))
-        if bases:
-            assert isinstance(body, WatchedBody)
-            if body.wrong:
-                raise body.first_wrong
-            CURRENT.set(None)
-            title = (found.__doc__ or name).strip().partition("\n")[0].removesuffix(".")
-            found.workbook = workbook_of(name, body, title, source, re.findall(r"\w+", headline), prose)
-        return found
-
-
-class Method(metaclass=_Declaring):
-    """A method of one's own: `class Name(Method, source=...)` with its title and its quantities as its body.
-
-    Attributes
-    ----------
-    workbook : Workbook
-        What it declares, in the order in which it stands there.
-    """

@@ -18,6 +18,7 @@ from .cells.units import named_unit_of
 from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
+from .inputs.keys import fixed
 from .messages.errors import listing
 from .method_lines import (
     ComputedLine,
@@ -61,7 +62,8 @@ class MethodBody(dict[str, Any]):
         self.places = Standing([{}])  # what its symbols stand for
         self.optional = Optionals()
         self.axis = Axis(rows, *_numbers(index, size))
-        self.axes = [self.axis]  # and the pairs of its rows, and groups of them
+        self.row_axes = [self.axis]  # and the rows of further ones
+        self.axes = [self.axis]  # and these, the pairs of its rows, and groups of them
         self.groups: list[GroupAxis] = []
         self.columns: dict[str, Column] = {}
         self.inputs: list[Measured | Parameter] = []
@@ -129,7 +131,7 @@ class MethodBody(dict[str, Any]):
             return Add(*map(exact, formula))
         formula = self._of_one_row(exact(formula))
         over = self.axis_of(formula) or self.axis
-        if over is not self.axis and not isinstance(formula, Indexed):
+        if over not in self.row_axes and not isinstance(formula, Indexed):
             formula = self._of_rows(formula, over)
         return Sum(formula, (over.index, 1, over.size))
 
@@ -143,7 +145,9 @@ class MethodBody(dict[str, Any]):
         """How many rows there are, where it stands; of a formula, in how many rows it has a value."""
         over = self.axis_of(formula)
         every, by = (over or self.axis).size, ""
-        if of is not None:
+        if of in self.row_axes and over in (None, of):
+            every = of.size
+        elif of is not None:
             every, over, by = self._of_groups(1, of), over and self.axis, f"_by_{of.row}"
         if over is None:
             return every
@@ -155,15 +159,30 @@ class MethodBody(dict[str, Any]):
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
         return self.columns[name].cell
 
+    def further(self, name: str, index: str, size: str) -> Axis:
+        """The rows of a further table."""
+        if len({index, size}) < 2 or not all(each.isidentifier() for each in (name, index, size)):
+            raise SheetError(f"rows('{name}') needs names: letters, digits and _ make a name", name)
+        if name in fixed("measurements"):
+            raise SheetError(
+                f"{name} is a key of [measurements] in report.toml: call the rows otherwise", name
+            )
+        axis = Axis(name, *_numbers(index, size))
+        if axis.row in [one.row for one in self.axes] or name in [one.name for one in self.axes]:
+            said = "rows='readings' behind (Method says what those of the class are"
+            raise SheetError(f"{name} are rows already: {said}", name)
+        self.row_axes.append(axis)
+        self.axes.append(axis)
+        self._refuse_name_of_rows()
+        return axis
+
     def grouped(self, by: str, name: str, index: str, size: str, example: str) -> GroupAxis:
         """The groups of the rows that have one word in a column."""
         if len({index, size}) < 2 or not all(each.isidentifier() for each in (by, name, index, size)):
             raise SheetError(f"groups('{by}') needs names: letters, digits and _ make a name", by)
         if by in (self.axis.row, self.axis.name) or name in [axis.name for axis in self.axes]:
-            raise SheetError(
-                f"{by} or {name} are rows already: rows='readings' behind (Method says what the table's are",
-                by,
-            )
+            said = "rows='readings' behind (Method says what the table's are"
+            raise SheetError(f"{by} or {name} are rows already: {said}", by)
         number, many = _numbers(index, size)
         row, own = _numbers(f"{self.axis.index_name}_of_{by}", f"{self.axis.size_name}_of_{by}")
         members = MemberAxis(f"{self.axis.name}_by_{by}", row, own, of=self.axis, group=number, by=by)
@@ -173,18 +192,16 @@ class MethodBody(dict[str, Any]):
         self._refuse_name_of_rows()
         return self.groups[-1]
 
-    def words(self, place: int) -> Iterator[str]:
-        """What the example of a table has in its columns of words, in a row from 1."""
-        for axis in self.groups:
-            said = self.examples.get(axis.members.by, "").split()
-            yield said[place - 1] if place <= len(said) else f"S{(place + 1) // 2}"
-
     def _of_groups(self, formula: Any, of: Any) -> Sum:
         """The sum over the rows of each group."""
         return Sum(self._of_a_group(formula, of), (self.axis.index, 1, self.axis.size))
 
     def _of_a_group(self, formula: Any, of: Any) -> Expr:
         """A formula of a row where that belongs to a group."""
+        if of in self.row_axes:
+            raise SheetError(
+                f"of={of.name} are the rows of a table: what names them is taken over them without a word"
+            )
         if of not in self.groups:
             raise SheetError(f"of={of} is none of what groups() returned")
         formula = self._without_groups(exact(formula))
@@ -240,6 +257,12 @@ class MethodBody(dict[str, Any]):
         found = [axis for axis in found if axis not in beneath]  # a point may name what its curve is of
         if self.axis in found:
             found = [axis for axis in found if axis not in self.groups]
+        if len(tables := [axis for axis in found if axis in self.row_axes]) > 1:
+            first, second = (axis.name for axis in tables[:2])
+            raise SheetError(
+                f"one formula names {first} and {second}, which are rows of two tables: take a mean, "
+                f"a sum or a fit over the {first} first, or over the {second}"
+            )
         if len(found) > 1 and not self.groups:
             raise SheetError(
                 "one formula names a row and a pair of rows: say first(...) or second(...) of which"
@@ -388,6 +411,9 @@ class MethodBody(dict[str, Any]):
             self.axis.index_name: (f"the {self.axis.row}'s number", "index='...' behind (Method"),
             self.axis.size_name: (f"the number of {self.axis.name}", "size='...' behind (Method"),
         }
+        for rows in self.row_axes[1:]:
+            words[rows.index_name] = f"the {rows.row}'s number", "index='...' in rows()"
+            words[rows.size_name] = f"the number of {rows.name}", "size='...' in rows()"
         for groups in self.groups:
             words[groups.index_name] = f"the {groups.row}'s number", "index='...' in groups()"
             words[groups.size_name] = f"the number of {groups.name}", "size='...' in groups()"
@@ -463,12 +489,16 @@ class MethodBody(dict[str, Any]):
         if size.zero:  # nothing is colder than 0 K
             bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
         own = name, said.unit, said.asked or said.meaning, bounds
-        self.inputs.append(Measured(*own) if said.is_measured else Parameter(*own, said.default))
+        rows = self.axis if said.of is None else said.of
+        if rows not in self.row_axes:
+            raise SheetError(f"{name}: of={getattr(rows, 'row', rows)} is none of what rows() returned", name)
+        measured = Measured(*own, table=rows.name)
+        self.inputs.append(measured if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
         self.constants += [name] * said.is_constant
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)
         rule = Given("measured" if said.is_measured else "parameter")
-        axis = self.axis if said.is_measured else None
+        axis = rows if said.is_measured else None
         words = {"meaning": said.meaning, **unit_in_si(size), **said.column, "positive": positive}
         if own_word := said.quantity:
             words |= {"meaning": own_word.meaning, "latex": own_word.latex, "positive": own_word.positive}
@@ -556,13 +586,8 @@ class MethodBody(dict[str, Any]):
         if sought.start is None or not sought.start.has(*REDUCTIONS):
             return sought
         own = f"{name}_start"
-        said = ComputedLine(
-            f"where the search for {name} begins",
-            sought.unit,
-            {"positive": False},
-            (sought.start,),
-            next(self.own),
-        )
+        meaning, positive = f"where the search for {name} begins", {"positive": False}
+        said = ComputedLine(meaning, sought.unit, positive, (sought.start,), next(self.own))
         self.columns[own] = column = self._computed(own, said)
         self.aside.append(own)
         return replace(sought, start=column.cell)

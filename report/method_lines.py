@@ -83,6 +83,7 @@ class InputLine(Declaration):
     bounds: Bounds = field(default_factory=Bounds)
     default: str | None = None
     is_measured: bool = False
+    of: Any = None  # of what is measured: what rows() returned
     example: str = ""
     is_constant: bool = False
     optional: bool = False

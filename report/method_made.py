@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..derivations.equation import Ledger
 from ..derivations.vocabulary import Quantity, Vocabulary, spelt
+from .axis import Axis
 from .charts import Drawn
 from .column import Column, SheetError
 from .method_body import MethodBody
 from .method_lines import Declaration
 from .quantity import Bounds
 from .sheet import Sheet
-from .workbook import Measured, Parameter, Workbook, tables_of
+from .workbook import Measured, Parameter, RowTable, Workbook, tables_of
 
 __all__ = ["workbook_of"]
 
@@ -32,6 +33,24 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
         low, high = sorted((end + far / 2, end + 2 * far))
     own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
     return Quantity(*own, bool(column.positive), "", *known)
+
+
+def _words(body: MethodBody, place: int) -> Iterator[str]:
+    """What the example of a table has in its columns of words, in a row from 1."""
+    for axis in body.groups:
+        said = body.examples.get(axis.members.by, "").split()
+        yield said[place - 1] if place <= len(said) else f"S{(place + 1) // 2}"
+
+
+def _table_of(axis: Axis, body: MethodBody, columns: Sequence[Measured]) -> RowTable:
+    """A table of measured rows, with an example of what stands in it."""
+    own = [one for one in columns if one.table == axis.name]
+    groups = tuple(each.members.by for each in body.groups if each.members.of == axis)
+    rows = zip(*(body.examples.get(one.name, "").split() for one in own), strict=False)
+    head = (axis.row, *groups, *(f"{one.name} [{one.unit}]" for one in own))
+    numbered = enumerate(rows, start=1)
+    example = ((str(place), *(_words(body, place) if groups else ()), *row) for place, row in numbered)
+    return RowTable(axis.name, axis.row, 1, groups, (head, *example))
 
 
 def workbook_of(
@@ -71,9 +90,11 @@ def workbook_of(
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
-    rows = zip(*(body.examples.get(one.name, "").split() for one in columns_of), strict=False)
-    belonging = tuple(axis.members.by for axis in body.groups)
-    head = (body.axis.row, *belonging, *(f"{one.name} [{one.unit}]" for one in columns_of))
+    row_tables = [_table_of(axis, body, columns_of) for axis in body.row_axes]
+    several = tuple(one for one in row_tables if any(each.table == one.name for each in columns_of))
+    if len(several) < 2:  # the only one needs no name
+        columns_of = tuple(replace(each, table="") for each in columns_of)
+    only = several[0] if several else row_tables[0]
     return Workbook(
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
@@ -84,8 +105,8 @@ def workbook_of(
         sheet=lambda names: body.optional.sheet(columns, names),
         either=tuple(body.optional.either),
         headline=tuple(headline) or tuple(last),
-        row=body.axis.row,
-        least=1,
+        row=only.row,
+        least=only.least,
         curves=tuple(body.curves),
         claims=tuple(body.claims),
         constants=frozenset(body.constants),
@@ -95,10 +116,9 @@ def workbook_of(
         prose=prose or "generic",
         figures=tuple(body.figures),
         drawn=(lambda sheet: curves) if curves.columns else None,
-        groups=belonging,
-        example=(head, *((str(place), *body.words(place), *row) for place, row in enumerate(rows, start=1)))
-        if columns_of
-        else (),
+        groups=only.groups,
+        example=only.example if columns_of else (),
+        several=several if len(several) > 1 else (),
         example_parameters={
             one.name: body.examples[one.name] for one in given_to if one.name in body.examples
         },

@@ -49,11 +49,13 @@ class Prepared:
     @property
     def labels(self) -> dict[str, tuple[int, ...]]:
         """Row numbers of the axes that come with the data, and of the group of each row."""
-        found = {axis.name: self.inputs.tests for axis in self.sheet.axes if axis.is_given}
+        inputs = self.inputs
+        found = {axis.name: inputs.on(axis.name).tests for axis in self.sheet.axes if axis.is_given}
         for axis in self.sheet.axes:
             if isinstance(axis, MemberAxis):
-                number = self.inputs.groups(axis.by)
-                found[axis.name] = tuple(number[test] for test in self.inputs.tests)
+                table = inputs.on(axis.of.name)
+                number = table.groups(axis.by)
+                found[axis.name] = tuple(number[test] for test in table.tests)
         return found
 
     @cached_property
@@ -69,9 +71,10 @@ class Prepared:
         found, inputs = dict[str, dict[tuple[int, ...], str]](), self.inputs
         for axis in self.sheet.axes:
             if isinstance(axis, GroupAxis):
-                found[axis.name] = {(n,): word for n, word in enumerate(inputs.words(axis.row), start=1)}
-            elif axis.is_given and inputs.naming:
-                found[axis.name] = {(test,): row[inputs.naming[0]] for test, row in inputs.rows.items()}
+                words = inputs.on(axis.members.of.name).words(axis.row)
+                found[axis.name] = {(n,): word for n, word in enumerate(words, start=1)}
+            elif axis.is_given and (name := (table := inputs.on(axis.name)).naming):
+                found[axis.name] = {(test,): row[name[0]] for test, row in table.rows.items()}
         return found
 
     def check_cells(self) -> Inputs:
@@ -96,6 +99,7 @@ class Prepared:
                 for c in self.sheet.columns
             },
             {c.name: self.words.get(c.axis.name, {}) for c in self.sheet.columns if c.axis},
+            {c.name: self.inputs.beneath(c.axis) for c in self.sheet.columns},
         )
 
     @property

@@ -12,7 +12,7 @@ from ..derivations.unit_text import of_differences, parse_unit
 from .inputs.inputs import Inputs, load
 from .machine.provenance import versions
 from .machine.timing import timed
-from .messages.errors import LoopsheetError, UsageError, diagnose
+from .messages.errors import LoopsheetError, UsageError, diagnose, listing
 from .prepared import Prepared
 from .which_workbook import find_workbook, is_shipped
 
@@ -51,6 +51,7 @@ __all__ = [
     "shown",
     "silent",
     "uncertain",
+    "words_beside",
 ]
 
 Step = Callable[[str], None]
@@ -240,8 +241,9 @@ def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
         return replace(report, engines=_agreements(report, computed, every))
     few = _evaluated(made, report.algebra, silent)
     found = _agreements(few, sample.with_own(computed, whole), every)
-    rows = next(axis.name for axis in report.sheet.axes if axis.is_given)
-    told = f"{len(inputs.tests)} of {len(report.inputs.tests)} {rows}"
+    given = [axis.name for axis in report.sheet.axes if axis.is_given]
+    sizes = [(len(inputs.on(axis).tests), len(report.inputs.on(axis).tests), axis) for axis in given]
+    told = listing(["{} of {} {}".format(*size) for size in sizes], last="and")
     of = how_large(whole.sheet, whole.layouts)
     return replace(report, engines=tuple(replace(each, of=of, sample=told) for each in found))
 
@@ -404,6 +406,12 @@ def for_a_grid(report: Report) -> Drawn:
     return drawn_of(inputs.workbook, inputs.given, sheet, "curves of a worksheet", make)
 
 
+def words_beside(report: Report) -> dict[str, tuple[str, ...]]:
+    """The columns of words beside the rows of each table, by index set."""
+    given = (axis.name for axis in report.sheet.axes if axis.is_given)
+    return {axis: report.inputs.on(axis).remarks for axis in given}
+
+
 def book(report: Report) -> tuple[Grid, bytes]:
     """The sheet as a workbook with live formulas: where its cells are, and the file."""
     refuse_too_many_rows(report.values.layouts)
@@ -414,8 +422,8 @@ def book(report: Report) -> tuple[Grid, bytes]:
     units = {name: how.unit for name, how in report.shown.items()}
     try:
         first, values = report.workbook.headline, report.marks.values
-        words = report.inputs.remarks
-        grid = excel_grid.grid(report.sheet, values, units, first, for_a_grid(report), words)
+        words, drawn = words_beside(report), for_a_grid(report)
+        grid = excel_grid.grid(report.sheet, values, units, first, drawn, words)
     except NotPrintable as error:
         raise UsageError(
             diagnose("LS606", reason=error, known="functions that every spreadsheet has")

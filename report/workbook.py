@@ -26,6 +26,7 @@ __all__ = [
     "FigureSpec",
     "Measured",
     "Parameter",
+    "RowTable",
     "SquareSum",
     "TableSpec",
     "Workbook",
@@ -48,6 +49,34 @@ class Measured:
     """What values are allowed, in SI."""
     scatter: str = ""
     """Of what a model is fitted to, the cell that tells how it scatters about the curve."""
+    table: str = ""
+    """The name of the table of rows that it stands in, where there are several."""
+
+
+@dataclass(frozen=True)
+class RowTable:
+    """A table of measured rows, which has a file of its own."""
+
+    name: str = ""
+    """The index set of its rows, and its place under ``[measurements]``; none of the only one."""
+    row: str = "test"
+    """What a row is called: the first line of the file may say that in place of ``test``."""
+    least: int = 2
+    """How many rows it takes at least."""
+    groups: tuple[str, ...] = ()
+    """The columns of words that say which rows belong together."""
+    example: tuple[tuple[str, ...], ...] = ()
+    """A small one that ``new`` writes; its first row is the header, with units."""
+
+    @property
+    def place(self) -> tuple[str, ...]:
+        """Its place in report.toml."""
+        return ("measurements", self.name) if self.name else ("measurements",)
+
+    @property
+    def file(self) -> str:
+        """What its file is called, unless a folder calls it otherwise."""
+        return f"{self.name or 'measurements'}.csv"
 
 
 @dataclass(frozen=True)
@@ -276,6 +305,9 @@ class Workbook:
     """A small table of measurements that ``new`` writes; its first row is the header, with units."""
     example_parameters: Mapping[str, str] = field(default_factory=dict)
     """The parameters that go with it, as printed, by name."""
+    several: tuple[RowTable, ...] = ()
+    """The tables of measured rows where there are several, which then say `row`, `least`, `groups` and
+    `example` themselves; what is measured says in which it stands."""
     drawn: Callable[[Sheet], Drawn] | None = None
     """Takes the sheet; returns the columns that only the charts of its figures ask for."""
     drawings: Callable[[], Mapping[str, Callable[[Any], Any]]] | None = None
@@ -305,6 +337,15 @@ class Workbook:
         """What is missing or contradictory among the parameters that were given; None if nothing is."""
         own = () if self.check_parameters is None else (self.check_parameters(given),)
         return next(filter(None, (*(each.wrong(given) for each in self.either), *own)), None)
+
+    @property
+    def row_tables(self) -> tuple[RowTable, ...]:
+        """The tables of measured rows, in the order in which they are told."""
+        return self.several or (RowTable("", self.row, self.least, self.groups, self.example),)
+
+    def columns_of(self, table: RowTable) -> tuple[Measured, ...]:
+        """What is measured in the rows of one of them."""
+        return tuple(each for each in self.measured if each.table == table.name)
 
     @property
     def charts(self) -> tuple[Chart, ...]:

@@ -24,6 +24,7 @@ from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.inputs.measurements import Measurements
 from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.messages.errors import Location
 from loopsheet.report.quantity import Printed
@@ -149,8 +150,9 @@ class Campaign:
                 "beta": Printed(self.beta, "1", Fraction(self.beta), ONE),
                 "points_per_pair": Printed(str(POINTS), "1", Fraction(POINTS), ONE),
             },
-            self.given, tests,
-            {name: tuple(column) for name, column in self.measured.items()}, {}, tuple(self.published), {},
+            self.given,
+            (Measurements(tests, {name: tuple(column) for name, column in self.measured.items()}, {}),),
+            tuple(self.published), {},
             {} if self.habits.fit else dict.fromkeys(("alpha_log", "C_log"), Location("")),
         )  # fmt: skip
         return referee(sheet, inputs, values, data)

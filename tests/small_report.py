@@ -11,6 +11,7 @@ from loopsheet.derivations.equation import Ledger
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.inputs.measurements import Measurements
 from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import compare, refereed
@@ -151,7 +152,8 @@ def _computed(
     values = engine.evaluate(sheet, {axis.name: rows}, data)
     inputs = Inputs(
         Path(), "", Workbook("made", "", "", lambda: Ledger(()), (), (), lambda given: sheet),
-        dict(parameters), frozenset(parameters), rows,
-        {name: tuple(column) for name, column in measured.items()}, {}, tuple(publish(values)), {},
+        dict(parameters), frozenset(parameters),
+        (Measurements(rows, {name: tuple(column) for name, column in measured.items()}, {}),),
+        tuple(publish(values)), {},
     )  # fmt: skip
     return inputs, values, data

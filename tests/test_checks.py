@@ -130,7 +130,7 @@ def test_code_in_markdown(text: str, shown: str) -> None:
 
 
 def test_of_many_wrong_cells_some_are_named() -> None:
-    inputs = Inputs(Path("f"), "", None, {}, frozenset(), (), {}, {}, (), {})  # type: ignore[arg-type]
+    inputs = Inputs(Path("f"), "", None, {}, frozenset(), (), (), {})  # type: ignore[arg-type]
     wrong = Agreement(9, 1.0, "x", tuple(f"x[{n}]: off" for n in range(9)), engine="node")
     check = of_engine(wrong, inputs)
     assert not check.passed

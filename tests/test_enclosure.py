@@ -159,7 +159,7 @@ def test_nothing_is_certified_of_a_table_that_can_be_reached(campaign: Campaign)
     inputs = campaign.inputs
     depths = list(inputs.measured["x_p"])
     depths[1] = replace(depths[1], text="29.8", value=Fraction("29.8e-6"))
-    inputs = replace(inputs, measured={**inputs.measured, "x_p": tuple(depths)})
+    inputs = inputs.with_numbers({"x_p": tuple(depths)})
     data = {**campaign.data, "x_p": [float(p.value) for p in depths]}
     values = engine.evaluate(campaign.sheet, campaign.labels, data)
     problem = table(Campaign(campaign.sheet, inputs, values, data, campaign.free), "Table 2")
@@ -173,7 +173,7 @@ def test_an_input_is_looked_for_among_those_that_are_allowed(campaign: Campaign)
     """A print of 1.00 stands for no restitution above 1, however it was rounded."""
     e = list(campaign.inputs.measured["e"])
     e[0] = replace(e[0], text="1.00", value=Fraction(1))
-    inputs = replace(campaign.inputs, measured={**campaign.inputs.measured, "e": tuple(e)})
+    inputs = campaign.inputs.with_numbers({"e": tuple(e)})
     problem = table(replace(campaign, inputs=inputs), "Table 2")
     (place,) = (n for n, u in enumerate(problem.unknowns) if (u.column, u.row) == ("e", 0))
     assert (problem.box.low[place], problem.box.high[place]) == (0.995, 1.0)

@@ -104,7 +104,7 @@ Findings = Callable[..., list[str]]
 def test_the_paper_is_read_with_its_digits() -> None:
     inputs = load(PAPER, find_workbook)
     assert inputs.title == "Soft steel, ball drop"
-    assert inputs.tests == (1, 2, 3, 4, 5)
+    assert inputs.only.tests == (1, 2, 3, 4, 5)
     assert [number.text for number in inputs.measured["x_p"]] == ["23.5", "29.7", "41.6", "45.97", "51.03"]
     assert inputs.measured["x_p"][0].value == Fraction(235, 10**7)
     assert inputs.measured["v"][1].digits == 4
@@ -150,7 +150,7 @@ def test_numbers_know_where_they_stand(read: Reader) -> None:
 def test_any_compatible_unit_and_any_order_of_columns(read: Reader) -> None:
     csv = "x_p [inch],e [%],test,v [km/h]\n0.001,53.0,7,36\n0.002,51.2,3,72\n"
     inputs = read(csv=csv)
-    assert inputs.tests == (7, 3)
+    assert inputs.only.tests == (7, 3)
     assert [number.value for number in inputs.measured["v"]] == [10, 20]
     assert inputs.measured["x_p"][0].value == Fraction(254, 10**7)
     assert inputs.measured["e"][0].value == Fraction(53, 100)
@@ -192,7 +192,7 @@ def test_given_uncertainties_are_in_si_and_for_their_column(read: Reader) -> Non
 )
 def test_tables_as_programs_write_them(csv: str, read: Reader) -> None:
     plain, other = read(), read(csv=csv)
-    assert other.tests == plain.tests
+    assert other.only.tests == plain.only.tests
     for name, numbers in plain.measured.items():
         assert [number.text for number in other.measured[name]] == [number.text for number in numbers]
         assert [number.value for number in other.measured[name]] == [number.value for number in numbers]
@@ -246,7 +246,7 @@ def test_without_a_title_the_workbook_s_holds(read: Reader) -> None:
 def test_two_hundred_tests(read: Reader) -> None:
     rows = "".join(f"{k},{2 + k / 100:.3f},0.500,{20 + k / 10:.1f}\n" for k in range(1, 201))
     inputs = read(csv="test,v [m/s],e [1],x_p [um]\n" + rows)
-    assert inputs.tests == tuple(range(1, 201))
+    assert inputs.only.tests == tuple(range(1, 201))
     assert len(inputs.measured["v"]) == 200
 
 
@@ -541,7 +541,7 @@ def test_links_may_not_lead_out_of_the_folder(read: Reader, tmp_path: Path) -> N
     Path("measurements.csv").unlink()
     Path("real.csv").write_text(CSV)
     Path("measurements.csv").symlink_to("real.csv")
-    assert load(Path(), find_workbook).tests == (1, 2)
+    assert load(Path(), find_workbook).only.tests == (1, 2)
 
 
 @pytest.mark.parametrize(

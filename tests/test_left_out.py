@@ -49,11 +49,11 @@ def test_it_takes_part_in_nothing(tmp_path: Path) -> None:
     report = Study(campaign(tmp_path / "left", published=False)).computed
     removed = "\n".join(re.sub(r",[^,]*$", "", line) for line in LEFT_OUT.splitlines() if "n/a" not in line)
     without = Study(campaign(tmp_path / "without", removed, published=False)).computed
-    assert report.inputs.tests == without.inputs.tests == (1, 2, 4, 5)
+    assert report.inputs.only.tests == without.inputs.only.tests == (1, 2, 4, 5)
     for column in report.sheet.columns:
         ours, theirs = report.values.cells(column.name), without.values.cells(column.name)
         assert [(cell.label, cell.value) for cell in ours] == [(cell.label, cell.value) for cell in theirs]
-    (left,) = report.inputs.left_out
+    (left,) = report.inputs.only.left_out
     assert (left.test, left.reason, left.place) == (3, REASON, 2)
     assert left.texts == {"v": "4.089", "e": "n/a", "x_p": "41.6"}
     assert (left.at.line, left.at.column) == (4, 19)

@@ -516,9 +516,9 @@ def test_rows_without_numbers_are_numbered_as_they_stand(tmp_path: Path) -> None
     named = [f"{name},{line.partition(',')[2]}" for name, line in zip("CBA", lines, strict=False)]
     table.write_text("\n".join(["specimen,T [s]", *named, ""]), encoding="utf-8")
     study = Study(tmp_path / "c")
-    assert study.inputs.tests == (1, 2, 3)
-    assert study.inputs.remarks == ("specimen",)
-    assert study.inputs.texts[2]["specimen"] == "B"
+    assert study.inputs.only.tests == (1, 2, 3)
+    assert study.inputs.only.remarks == ("specimen",)
+    assert study.inputs.only.texts[2]["specimen"] == "B"
     table.write_text("\n".join([head, *lines[:3], ""]), encoding="utf-8")
     again = Study(tmp_path / "c").computed.values
     assert again.value["g"] == study.computed.values.value["g"]

@@ -24,6 +24,7 @@ from loopsheet.report.cells.values import Values
 from loopsheet.report.distribution import Error, Shape
 from loopsheet.report.engines import exact
 from loopsheet.report.inputs.inputs import Inputs
+from loopsheet.report.inputs.measurements import Measurements
 from loopsheet.report.inputs.uncertainty import Stated
 from loopsheet.report.quantity import Printed
 from loopsheet.report.sheet import Column, Formula, Sheet
@@ -99,12 +100,13 @@ def drawn(seed: int, correlated: bool, dof: bool, together: bool = False) -> Dra
     measured, single = {name: given[name] for name in "ab"}, {name: given[name][0] for name in "cd"}
     workbook = Workbook("drawn", "", "", lambda: Ledger(()), (), (), lambda names: sheet)
     inputs = Inputs(
-        Path(), "", workbook, single, frozenset(single), tuple(range(1, TESTS + 1)), measured, {}, (), {},
+        Path(), "", workbook, single, frozenset(single),
+        (Measurements(tuple(range(1, TESTS + 1)), measured, {}),), (), {},
         uncertainty=Stated({}, (), r),
     )  # fmt: skip
     data = {name: [p.value for p in column] for name, column in measured.items()}
     data |= {name: p.value for name, p in single.items()}
-    values = exact.evaluate(sheet, {ROWS.name: inputs.tests}, data).rounded(sheet)
+    values = exact.evaluate(sheet, {ROWS.name: inputs.only.tests}, data).rounded(sheet)
     return Drawn(sheet, given, r, inputs, values, Spread(inputs, values))
 
 
@@ -307,7 +309,7 @@ def differences(sheet: Sheet, inputs: Inputs, moves: Sequence[tuple[str, int, fl
     """What a standard uncertainty of each given number does to cells (cells, moves)."""
     step = Fraction(1, 10**15)
     rows = {name: [p.value for p in inputs.printed(name)] for name in sheet.bounds}
-    labels = {axis.name: inputs.tests for axis in sheet.axes if not axis.parents}
+    labels = {axis.name: inputs.only.tests for axis in sheet.axes if not axis.parents}
 
     def at(name: str, row: int, by: Fraction) -> list[Any]:
         moved = rows | {name: [value + by * (place == row) for place, value in enumerate(rows[name])]}

@@ -36,7 +36,7 @@ def words(table: Table) -> list[list[str]]:
 def test_they_come_along(tmp_path: Path) -> None:
     plain = Study(gas.folder(tmp_path / "plain")).computed
     report = Study(gas.folder(tmp_path / "told", table=TABLE)).computed
-    assert report.inputs.remarks == ("operator", "remark")
+    assert report.inputs.only.remarks == ("operator", "remark")
     assert report.values.value["m"].tolist() == plain.values.value["m"].tolist()
     build.build(Study(tmp_path / "told"), tmp_path / "out", ("html", "latex", "json"))
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
@@ -54,8 +54,8 @@ def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None
     table = TABLE.replace("reading,operator", "reading,by").replace("1,A", "R-1,A").replace("2,B", "R-2,B")
     named = table.replace("3,A", "R-3,A").replace("4,B", "R-4,B")
     inputs = Study(gas.folder(tmp_path / "named", table=named)).inputs
-    assert (inputs.tests, inputs.naming) == ((1, 2, 3), ("reading",))
-    assert inputs.called(3) == "3 (R-3)"
+    assert (inputs.only.tests, inputs.only.naming) == ((1, 2, 3), ("reading",))
+    assert inputs.only.called(3) == "3 (R-3)"
     shown = Tables(Material(Study(tmp_path / "named").computed)).data.values()
     heads = [[column.head for column in each.columns] for each in shown]
     heads = [each for each in heads if ("reading",) in each]
@@ -97,7 +97,7 @@ def test_a_name_stands_beside_its_row_in_every_table(
 ) -> None:
     folder = gas.folder(tmp_path, table=gas.NAMED, code=gas.IN_TABLES)
     report = Study(folder).computed
-    assert report.inputs.naming == ("specimen",)
+    assert report.inputs.only.naming == ("specimen",)
     tables = Tables(Material(report)).data
     assert words(tables["measured"]) == [
         ["reading", "note", "specimen"],
@@ -133,7 +133,7 @@ def test_what_not_every_row_has_is_no_name(tmp_path: Path) -> None:
     table = gas.NAMED.replace("#9 {\\a}", "")
     assert table != gas.NAMED
     report = Study(gas.folder(tmp_path, table=table, code=gas.IN_TABLES)).computed
-    assert report.inputs.naming == ()
+    assert report.inputs.only.naming == ()
     assert words(Tables(Material(report)).data["computed"])[:2] == [["reading"], ["1"]]
     (told,) = (check.message for check in report.oddities if check.name == "reading 4")
     assert told == "reading 4, fell"

@@ -45,7 +45,7 @@ def with_every_pair(report: Report) -> Values:
     """What comes out where no pair is left out."""
     open_ones = (replace(c, requires=()) if c.name == "x_top" else c for c in report.sheet.columns)
     data = {c.name: report.values.value[c.name] for c in report.sheet.columns if isinstance(c.rule, Given)}
-    return evaluate(Sheet(tuple(open_ones)), {"tests": report.inputs.tests}, data)
+    return evaluate(Sheet(tuple(open_ones)), {"tests": report.inputs.only.tests}, data)
 
 
 def test_every_exponent_has_a_value_and_averages_are_of_those_that_tell_one(report: Report) -> None:
@@ -89,7 +89,7 @@ def test_uncertainties_are_those_of_the_pairs_that_count(report: Report) -> None
             ends = [
                 evaluate(
                     report.sheet,
-                    {"tests": report.inputs.tests},
+                    {"tests": report.inputs.only.tests},
                     data | {name: data[name] + sign * u * (np.arange(6) == row)},
                 ).scalar("alpha_mean")
                 for sign in (1, -1)

@@ -94,7 +94,7 @@ def test_the_folder_is_read_without_findings(
     chdir(tmp_path / "here")
     Path("empty").mkdir() if where == "empty" else None
     inputs = load(new(Path(where), WORKBOOK)[0].parent, lambda *_: WORKBOOK)
-    assert inputs.tests == (1, 2)
+    assert inputs.only.tests == (1, 2)
     assert inputs.given == {"ball_mass"}
     assert inputs.title == "My campaign"
     assert not [name for name in tree(tmp_path) if name.endswith(".new")]

@@ -326,7 +326,7 @@ def test_a_test_that_takes_no_part_has_its_number_all_the_same(both: Path) -> No
     (both / "measurements.csv").write_text("test,left out\n1,\n2,bounced\n3,\n9,lost\n", encoding="utf-8")
     inputs = load(both, find_workbook)
     assert [float(each.value) for each in inputs.measured["x"]] == pytest.approx([23.5711e-6, 41.7254e-6])
-    bounced, lost = inputs.left_out
+    bounced, lost = inputs.only.left_out
     assert (float(bounced.texts["x"]), lost.texts["x"]) == (pytest.approx(29.7897), "")
     assert main(["build", str(both), "--to", "html,latex,xlsx"]) == 0
 

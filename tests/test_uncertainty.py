@@ -131,7 +131,7 @@ def test_any_campaign_against_differences(paper: Report, shifts: list[float]) ->
         name: base.value[name] * (1 + np.array(shifts[5 * n : 5 * n + 5])) for n, name in enumerate(names)
     }
     data = {name: base.value[name] for name in sheet.bounds} | moved
-    labels = {"tests": paper.inputs.tests}
+    labels = {"tests": paper.inputs.only.tests}
     values = evaluate(sheet, labels, data)
     own = Spread(paper.inputs, values)
     if own.second is not None and np.isnan(values.value["alpha"]).any():

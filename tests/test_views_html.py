@@ -191,7 +191,7 @@ def test_mentions_in_prose_carry_the_same_values(report: Report, tree: ET.Elemen
 def test_given_cells_are_inputs_with_the_printed_string(report: Report, tree: ET.Element) -> None:
     inputs = {(e.get("data-cell"), e.get("data-index")): e for e in _elements(tree, "input")}
     for name, printed in report.inputs.measured.items():
-        for test, number in zip(report.inputs.tests, printed, strict=True):
+        for test, number in zip(report.inputs.only.tests, printed, strict=True):
             element = inputs[name, str(test)]
             assert element.get("value") == number.text
             assert element.get("readonly") is not None

@@ -118,12 +118,13 @@ def test_script_begins_and_ends_as_one_element(page: str) -> None:
 
 
 def test_data_hold_the_inputs_as_printed(known: dict[str, Any], report: Report) -> None:
-    assert [test["label"] for test in known["tests"]] == [1, 2, 3, 4, 5]
+    (tests,) = known["tables"].values()
+    assert [test["label"] for test in tests["rows"]] == [1, 2, 3, 4, 5]
     cells = {"v": "2.940", "e": "0.512", "x_p": "29.7"}
-    assert known["tests"][1] == {"label": 2, "used": True, "reason": "", "cells": cells}
+    assert tests["rows"][1] == {"label": 2, "used": True, "reason": "", "cells": cells}
     assert known["parameters"]["beta"] == "1.5"
-    assert known["heads"] == {"test": "test", "v": "v [m/s]", "e": "e [1]", "x_p": "x_p [um]"}
-    assert known["texts"] == {}
+    assert tests["heads"] == {"test": "test", "v": "v [m/s]", "e": "e [1]", "x_p": "x_p [um]"}
+    assert tests["texts"] == {}
     assert set(known["columns"]) == {column.name for column in report.sheet.columns}
 
 

@@ -16,7 +16,7 @@ from ..quantity import Bounds, behind
 from .wheel import wheel
 
 if TYPE_CHECKING:
-    from ..workbook import Measured, Parameter, Workbook
+    from ..workbook import Measured, Parameter, RowTable, Workbook
 
 __all__ = ["CI", "new", "repository"]
 
@@ -54,7 +54,7 @@ def new(folder: Path, workbook: Workbook, ci: str = "", code: bytes = b"") -> li
     if code:
         files[OWN] = code
     if workbook.measured or not code:
-        files["measurements.csv"] = _measurements(workbook).encode()
+        files |= {table.file: _measurements(workbook, table).encode() for table in workbook.row_tables}
     try:
         beside = _for_service(folder, ci, files) if ci else {}
         is_new = _is_new(folder)
@@ -162,9 +162,9 @@ def _written(files: dict[Path, bytes]) -> Iterator[None]:
         raise
 
 
-def _measurements(workbook: Workbook) -> str:
-    header = (workbook.row, *(f"{column.name} [{column.unit}]" for column in workbook.measured))
-    return "".join(",".join(row) + "\n" for row in workbook.example or (header,))
+def _measurements(workbook: Workbook, table: RowTable) -> str:
+    header = (table.row, *(f"{column.name} [{column.unit}]" for column in workbook.columns_of(table)))
+    return "".join(",".join(row) + "\n" for row in table.example or (header,))
 
 
 def _report(workbook: Workbook, name: str) -> str:
@@ -187,12 +187,15 @@ def _lines(workbook: Workbook, name: str) -> Iterator[str]:
         yield from _parameter(parameter, workbook.example_parameters.get(parameter.name))
     if not workbook.measured and name == OWN:
         return
-    yield from ("", "[measurements]", 'file = "measurements.csv"')
-    for column in workbook.measured:
-        yield f"# {column.name}: {_meaning(column)}"
+    for table in workbook.row_tables:
+        yield from ("", f"[{'.'.join(table.place)}]", f'file = "{table.file}"')
+        for column in workbook.columns_of(table):
+            yield f"# {column.name}: {_meaning(column)}"
     if not workbook.measured:
         return
-    last, unit = workbook.measured[-1].name, workbook.measured[-1].unit
+    table = workbook.row_tables[-1]
+    of = workbook.columns_of(table)[-1]
+    last, unit = of.name, of.unit
     width = f"0.03{behind(unit)}"  # with its unit: another head of the column does not change it
     yield from (
         "# Its first line names each column and its unit, which may be any that converts to the one above.",
@@ -201,11 +204,11 @@ def _lines(workbook: Workbook, name: str) -> Iterator[str]:
         "# [uncertainty]                          # of whole columns, and of parameters",
         f'# {last} = "U = {width}, k = 2"         # or +-0.1 rect, 0.5 % of reading + 2 digits, exact',
         "",
-        "# [measurements.printed]",
+        f"# [{'.'.join((*table.place, 'printed'))}]",
         f'# {last} = "truncated"                    # if digits were cut off; without this, "rounded"',
         "",
         "# [expected]                             # cells and tests that are odd, and why",
-        '# "test 3" = "double bounce heard"',
+        f'# "{table.row if table.name else "test"} 3" = "double bounce heard"',
         "",
         "# [published]                            # values to compare with, if there are any",
         '# file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason',

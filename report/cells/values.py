@@ -245,14 +245,15 @@ class Values:
             known[column.axis.name] = {own: row for row, own in enumerate(self._labels(column.axis.name))}
         return known[column.axis.name][label]
 
-    def tests(self, cell: Cell) -> tuple[int, ...]:
-        """The numbers of the tests that a row rests on; none of a scalar."""
+    def tests(self, cell: Cell) -> tuple[tuple[str, int], ...]:
+        """The tests that a row rests on: the index set and the number of each; none of a scalar."""
         axis = self.sheet[cell.name].axis
         if axis is None:
             return ()
         layout, row = self.layouts[axis.name], self.row(self.sheet[cell.name], cell.label)
-        own = ((index, each.name) for index, each in axis.named.items() if each.is_given)
-        return tuple(int(self.layouts[name].labels[layout.rows[index][row], 0]) for index, name in own)
+        own = [(index, each.name) for index, each in axis.named.items() if each.is_given]
+        labels = {name: self.layouts[name].labels for _, name in own}
+        return tuple((name, int(labels[name][layout.rows[index][row], 0])) for index, name in own)
 
     def cells(self, name: str) -> Iterator[Cell]:
         """All cells of a column, in the order of its rows."""

@@ -150,7 +150,7 @@ class Said:
         if not known or tied(self.report):
             return None
         most, row = max(known)
-        chance = largest(most, len(known), len(self.report.inputs.left_out))
+        chance = largest(most, len(known), len(self.report.inputs.only.left_out))
         return (index_text(values.labels(column)[row]), chance) if chance < SIGNIFICANT else None
 
     def _test(self, name: str) -> Inlines:
@@ -242,7 +242,7 @@ class Said:
 
     def left_out(self) -> Inlines:
         """How many rows of the measurements are left out."""
-        left_out = self.report.inputs.left_out
+        left_out = [*self.report.inputs.left_out]
         return (Count(str(len(left_out)), "count", "left out"),) if left_out else ()
 
     def data(self) -> Blocks:

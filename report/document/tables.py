@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from ...derivations.proved import enumerated
 from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
-from ..inputs.measurements import LeftOut
+from ..inputs.measurements import LeftOut, Measurements
 from ..inputs.published import PublishedValue
 from ..quantity import span
 from ..result import verdict_words as words
@@ -190,12 +190,13 @@ class Tables:
         most = len(labels) if axis.is_given else MOST  # what was measured is shown whole
         rows = islice(zip(labels, *columns, strict=True), most)
         inputs, measured = self.report.inputs, any(head.given for head in heads) and axis.is_given
-        words = () if not axis.is_given else inputs.remarks if measured else inputs.naming
-        names: Mapping[int, Mapping[str, str]] = inputs.rows
+        table = inputs.on(axis.name) if axis.is_given else Measurements((), {}, {})
+        words, names = table.remarks if measured else table.naming, table.rows
         head = "no." if axis.row in words else axis.row
         if isinstance(axis, GroupAxis):
             words, head = (axis.row,), "no."
-            names = {n: {axis.row: word} for n, word in enumerate(inputs.words(axis.row), start=1)}
+            of = inputs.on(axis.members.of.name)
+            names = {n: {axis.row: word} for n, word in enumerate(of.words(axis.row), start=1)}
 
         def row(label: tuple[int, ...], items: Iterable[Entry], state: str = "") -> Row:
             told = (_run(names[label[0]][name]) for name in words)
@@ -203,14 +204,14 @@ class Tables:
 
         shown = [row(label, items) for label, *items in rows]
         if measured:
-            for each in inputs.left_out:
+            for each in table.left_out:
                 shown.insert(each.place, row((each.test,), _left_out(each, heads), "excluded"))
         legend = joined((self._legend(head) for head in heads), "; ")
         cut = f"The first {most} {axis.name} are shown; values.json has all of them."
         return Table(
             spec.name,
             self.rich(spec.title),
-            (TableColumn((head,)), *map(self._worded, words), *map(_headed, heads)),
+            (TableColumn((head,)), *(_worded(each, names) for each in words), *map(_headed, heads)),
             (Rows(tuple(shown)),),
             spec.number,
             legend=(*legend, ".", *((" ", *self.rich(spec.note)) if spec.note else ()), *self._known(heads)),
@@ -231,13 +232,6 @@ class Tables:
             if head.given and (said := of_column(self.report, head.name))
         ]
         return (" Stated uncertainties: ", *joined(told, "; "), ".") if told else ()
-
-    def _worded(self, name: str) -> TableColumn:
-        """A column of words beside the rows: names stay on their line, sentences are broken."""
-        texts = (name, *(row[name] for row in self.report.inputs.rows.values()))
-        if max(map(len, texts)) <= MOST_LETTERS:
-            return TableColumn((name,), "row")
-        return TableColumn((name,), "words", share=0.2)
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)
@@ -549,6 +543,13 @@ class Tables:
 
 def _percent(share: float) -> str:
     return f"{decimals(100 * share, 0).text}\u00a0%"
+
+
+def _worded(name: str, rows: Mapping[int, Mapping[str, str]]) -> TableColumn:
+    """A column of words beside the rows: names stay on their line, sentences are broken."""
+    if max(map(len, (name, *(row[name] for row in rows.values())))) <= MOST_LETTERS:
+        return TableColumn((name,), "row")
+    return TableColumn((name,), "words", share=0.2)
 
 
 def _headed(head: Head) -> TableColumn:

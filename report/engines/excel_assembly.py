@@ -80,7 +80,7 @@ class Assembly:
         counts: Mapping[str, float],
         units: Mapping[str, str],
         first: Sequence[str],
-        worded: Sequence[str],
+        worded: Mapping[str, Sequence[str]],
         thinned: Collection[str],
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
@@ -153,7 +153,7 @@ class Assembly:
             room = self.rooms[axis.name]
             self.indices[axis.name] = tuple(room.next() for _ in range(parts))
             if axis.is_given:
-                self.words[room.worksheet] = tuple(room.next() for _ in self.worded)
+                self.words[room.worksheet] = tuple(room.next() for _ in self.worded.get(axis.name, ()))
             elif isinstance(axis, GroupAxis):
                 self.words[room.worksheet] = (room.next(),)
                 self.put_group(axis, self.words[room.worksheet][0])
@@ -192,10 +192,11 @@ class Assembly:
     def put_group(self, axis: GroupAxis, group: Place) -> None:
         """Say where the words are by which a row belongs to its group, if there are any."""
         rows = axis.members.of
-        if axis.row in self.worded:
+        worded = self.worded.get(rows.name, ())
+        if axis.row in worded:
             words = self.words[self.names[rows.name]]
             which = self.layouts[rows.name].rows[axis.members.group_name].tolist()
-            grouped = Grouped(words[self.worded.index(axis.row)], group, tuple(which))
+            grouped = Grouped(words[worded.index(axis.row)], group, tuple(which))
             self.groups[grouped.own.worksheet] = (*self.groups.get(grouped.own.worksheet, ()), grouped)
 
     def number(self, column: Column) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, count
+from types import MappingProxyType
 from typing import Any
 
 from ..cells.grid import SCALARS, SLOPES, STEPS, CellBlock, Grid, Grouped, Place, Product
@@ -37,7 +38,7 @@ def grid(
     units: Mapping[str, str],
     first: Sequence[str] = (),
     drawn: Drawn | None = None,
-    worded: Sequence[str] = (),
+    worded: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> Grid:
     """Lay a sheet out as the cells of a workbook, with the values that they have now.
 
@@ -52,8 +53,8 @@ def grid(
         The scalars that are the result.
     drawn : Drawn or None
         What is drawn as native charts.
-    worded : sequence of str
-        The columns of words that stand beside the numbers of rows that are made of no others.
+    worded : mapping of str to sequence of str
+        By index set, the columns of words that stand beside the numbers of rows that are made of no others.
 
     Raises
     ------
@@ -75,7 +76,7 @@ def grid(
         from .excel_assembly import Assembly
 
         return Assembly(
-            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, worded, thinned
+            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, beside, thinned
         ).told()
 
     own = [
@@ -85,17 +86,18 @@ def grid(
     ]
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
-    sizes = sorted(counts.items()), sorted(units.items()), list(first), list(worded), thinned
+    beside = {axis: list(columns) for axis, columns in worded.items()}
+    sizes = sorted(counts.items()), sorted(units.items()), list(first), sorted(beside.items()), thinned
     hangs_on = repr((names, own, words, sizes))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     slopes = slope_values(values, sheet, told["slopes"])
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every, slopes)
     notes = of_data(told["notes"], dict[str, Place])
-    beside = of_data(told["words"], dict[str, tuple[Place, ...]])
+    words_at = of_data(told["words"], dict[str, tuple[Place, ...]])
     ways = of_data(told["slopes"]["ways"], dict[str, dict[str, tuple[Product, ...]]])
     groups = of_data(told["groups"], dict[str, tuple[Grouped, ...]])
-    return Grid(tuple(blocks), axes, drawn, notes, beside, groups, ways)
+    return Grid(tuple(blocks), axes, drawn, notes, words_at, groups, ways)
 
 
 def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

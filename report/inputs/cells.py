@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from ..messages.errors import Findings
 from .expected import NO_WORDS, Expectation, Words, check_expected
 from .inputs import Inputs
 from .limits import check_limits, of_every_row
+from .measurements import Measurements
 from .published import check_published
 
 __all__ = ["check_cells"]
@@ -18,6 +20,7 @@ def check_cells(
     inputs: Inputs,
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     words: Words = NO_WORDS,
+    beneath: Mapping[str, Collection[Measurements]] = MappingProxyType({}),
 ) -> Inputs:
     """Check all that was read of cells against those of the sheet.
 
@@ -31,6 +34,8 @@ def check_cells(
         For each cell its unit and the indices that it has: ``{()}`` for a scalar.
     words
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
+    beneath : mapping of str to collection of Measurements
+        For each cell the tables whose rows its own are made of.
 
     Returns
     -------
@@ -42,22 +47,27 @@ def check_cells(
     InputError
         With every cell, index and test that there is not, and every unit of another dimension.
     """
-    gone = {each.test for each in inputs.left_out}
+
+    def gone(tables: Iterable[Measurements]) -> set[int]:
+        return {each.test for table in tables for each in table.left_out}
 
     def rests_on_gone(name: str, index: tuple[int, ...]) -> bool:
-        there = cells[name][1] if name in cells else () if not name else (index,)
+        there = cells[name][1] if name in cells else (index,)
         if index in there:
             return False
         # Groups are known by their words, also those that have no row left.
-        return index in words[name] if words.get(name) else not gone.isdisjoint(index)
+        lost = gone(beneath.get(name, inputs.tables))
+        return index in words[name] if words.get(name) else not lost.isdisjoint(index)
 
     def is_gone(said: Expectation) -> bool:
         name, index = said.cell
+        if not name:
+            return not gone(said.tables(inputs.tables)).isdisjoint(index)
         return all(rests_on_gone(name, row) for row in said.rows or (index,))
 
     inputs = replace(
         inputs,
-        expected=tuple(each.of_words(words) for each in inputs.expected),
+        expected=tuple(each.of_words(words).in_table(inputs.tables) for each in inputs.expected),
         limits=tuple(each.of_words(words) for each in inputs.limits),
         published=tuple(each.of_words(words) for each in inputs.published),
         published_u=tuple(each.of_words(words) for each in inputs.published_u),
@@ -75,7 +85,7 @@ def check_cells(
         aside=aside,
     )
     findings = Findings()
-    check_expected(kept.expected, kept.tests, cells, findings, inputs.workbook.row, words)
+    check_expected(kept.expected, kept.tables, cells, findings, words)
     written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
     check_limits([*reversed(written.values())], cells, findings, words)
     check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings, words)

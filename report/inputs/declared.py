@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...derivations.unit_text import UnitError, parse_unit
 from ..messages.errors import listing, suggest
 from ..sheet import GroupAxis
-from ..workbook import FigureSpec, Measured, Parameter, TableSpec
+from ..workbook import FigureSpec, Measured, Parameter, RowTable, TableSpec
 
 if TYPE_CHECKING:
     from ..sheet import Sheet
@@ -21,6 +21,7 @@ _TEXTS = ("name", "title", "source", "prose")
 _LISTS: dict[str, type] = {
     "measured": Measured,
     "parameters": Parameter,
+    "several": RowTable,
     "headline": str,
     "fits": str,
     "tables": TableSpec,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from ..cells.address import index_text, named, parts
 from ..messages.errors import Findings, Location, listing, suggest
@@ -44,6 +44,25 @@ class OfCell(Protocol):
         """Column and index; no column for a test, no index for a whole column."""
 
 
+class OfRows(Protocol):
+    """A table of measured rows."""
+
+    @property
+    def name(self) -> str:
+        """Their index set; none of the only table."""
+
+    @property
+    def row(self) -> str:
+        """What one is called."""
+
+    @property
+    def tests(self) -> Sequence[int]:
+        """Their numbers."""
+
+
+T = TypeVar("T", bound=OfRows)
+
+
 @dataclass(frozen=True)
 class Expectation:
     """A cell that is expected to be odd, or several of a column, or a test whose cells are."""
@@ -55,6 +74,8 @@ class Expectation:
     """Where it was written."""
     rows: tuple[Index, ...] = ()
     """Which rows its word stands for, where one does."""
+    axis: str = ""
+    """The index set that its test is of, where there are several tables of rows."""
 
     @property
     def cell(self) -> tuple[str, Index]:
@@ -77,11 +98,23 @@ class Expectation:
         found = () if self.cell[1] else rows_of(word, words.get(name, {}))
         return replace(self, rows=tuple(found))
 
-    def covers(self, cell: str, index: Index, tests: Collection[int]) -> bool:
-        """Whether it speaks of a cell, by itself, by its column or by one of the tests that it rests on."""
+    def tables(self, tables: Iterable[T]) -> list[T]:
+        """The table that its test is in, by what a row is called there: ``test 3`` of the only one, too."""
+        every, word = list(tables), self.address.partition(" ")[0]
+        return [each for each in every if word == each.row or (word == "test" and not each.name)]
+
+    def in_table(self, tables: Iterable[OfRows]) -> Expectation:
+        """The same with the index set that its test is of."""
+        return replace(self, axis=next((each.name for each in self.tables(tables)), ""))
+
+    def covers(self, cell: str, index: Index, tests: Collection[tuple[str, int]]) -> bool:
+        """Whether it speaks of a cell, by itself, by its column or by one of the tests that it rests on.
+
+        `tests`: with the index set that each is of.
+        """
         name, own = self.cell
         if not name:
-            return own[0] in tests
+            return any(test == own[0] and self.axis in ("", axis) for axis, test in tests)
         return name == cell and (not own or index in (self.rows or (own,)))
 
 
@@ -112,44 +145,43 @@ def row_of(word: str, words: Mapping[Index, str]) -> Index | None:
 
 def check_expected(
     expected: Sequence[OfCell],
-    tests: Sequence[int],
+    tables: Sequence[OfRows],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
     findings: Findings,
-    row: str = "test",
     words: Words = NO_WORDS,
 ) -> None:
     """Find what is expected of cells and tests that there are not.
 
     Parameters
     ----------
-    tests : sequence of int
-        The numbers of the tests that there are.
+    tables : sequence of OfRows
+        The tables of rows that there are.
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its unit and the indices that it has: ``{()}`` for a scalar.
     findings : Findings
         Where unknown cells, indices and tests go.
-    row : str
-        What else a test is called.
     words : mapping of str to mapping of tuple of int to str
         For each cell what its rows are known by, by their indices.
     """
-    called = [f"{row} {test}" for test in tests]
+    called = [f"{table.row} {test}" for table in tables for test in table.tests]
+    first = [f"{table.row} {test}" for table in tables for test in table.tests[:1]]
     for each in expected:
         name, index = each.cell
         of, word = parts(each.address) or ("", "")
         if name not in cells and word and of in cells and () not in cells[of][1]:
             findings.add("LS506", each.at, name=of, text=word, known=rows(cells[of][1], words.get(of, {})))
             continue
-        is_other = not name and each.address.partition(" ")[0] not in ("test", row)
+        own = [] if name or not isinstance(each, Expectation) else each.tables(tables)
+        is_other = not name and not own
         if is_other or ((name or not index) and name not in cells):
             near = suggest(name or each.address, [*called, *cells])
-            known, suggestion = listing([*called[:1], *cells], most=24), near
+            known, suggestion = listing([*first, *cells], most=24), near
             findings.add("LS505", each.at, text=each.address, known=known, suggestion=suggestion)
             continue
-        indices = cells[name][1] if name else {(test,) for test in tests}
+        indices = cells[name][1] if name else {(test,) for table in own for test in table.tests}
         if index and index not in indices:
             known = rows(indices, words.get(name, {}))
-            findings.add("LS506", each.at, name=name or row, text=index_text(index), known=known)
+            findings.add("LS506", each.at, name=name or own[0].row, text=index_text(index), known=known)
 
 
 def rows(indices: Collection[Index], words: Mapping[Index, str]) -> str:

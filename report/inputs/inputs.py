@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...derivations.unit_text import parse_unit
 from ..cells.address import parts
@@ -23,10 +23,12 @@ from ..messages.errors import (
     suggest,
 )
 from ..quantity import there
+from ..sheet import Axis, with_parents
+from ..workbook import RowTable
 from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import Expectation, read_expected
-from .groups import groups, rows, words
+from .keys import fixed
 from .limits import Limits, read_limits
 from .measurements import MODES, LeftOut, Measurements, read_measurements
 from .number_text import NumberError, read_printed
@@ -46,7 +48,6 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from ..workbook import Workbook
     from .number_text import Declared
-    from .spelling import Alike
 
 __all__ = ["Find", "Inputs", "PublishedValue", "load"]
 
@@ -78,13 +79,8 @@ class Inputs:
     """Those that were given and those that have a default, in the workbook's order."""
     given: frozenset[str]
     """The names of those that were really given."""
-    tests: tuple[int, ...]
-    """The test numbers, in the order of the file."""
-    measured: dict[str, tuple[Printed | None, ...]]
-    """One number a test for each measured column; None where the cell is empty."""
-    header_units: dict[str, str]
-    """The unit of each measured column, as written in the header, and of the column of its uncertainties,
-    which is called ``u(x_p)``."""
+    tables: tuple[Measurements, ...]
+    """What was measured, table by table; what is left out there takes no part in all else."""
     published: tuple[PublishedValue, ...]
     """The values to referee."""
     files: dict[str, bytes]
@@ -99,8 +95,6 @@ class Inputs:
     be printed. Only the referee asks what would come out of them."""
     by_source: bool = False
     """Whether the published values are those of the workbook's own source."""
-    left_out: tuple[LeftOut, ...] = ()
-    """The tests that take no part, each with its reason; all else is about the others."""
     aside: tuple[PublishedValue, ...] = ()
     """Published values that rest on a test that is left out: they are not compared."""
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
@@ -113,14 +107,6 @@ class Inputs:
     left out."""
     taken: Mapping[str, Taken] = field(default_factory=dict)
     """The parameters and measured columns whose numbers were taken from other reports."""
-    heads: Mapping[str, str] = field(default_factory=dict)
-    """The first line of the measurements as it stands, by what it names."""
-    texts: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
-    """The row of each test as it stands, by column; that of one that is left out stands with it."""
-    remarks: tuple[str, ...] = ()
-    """The columns of words that come along; nothing is computed from them."""
-    alike: tuple[Alike, ...] = ()
-    """Words by which rows belong together, and that may be others misspelt."""
     cards: AskedCards = field(default_factory=AskedCards)
     """For which simulation codes the report tells what to type into them."""
 
@@ -143,27 +129,49 @@ class Inputs:
         return tuple(self.free_at)
 
     @cached_property
-    def rows(self) -> Mapping[int, Mapping[str, str]]:
-        """The row of each test as it stands, by column, also of those that are left out."""
-        return rows(self.texts, self.left_out)
+    def measured(self) -> dict[str, tuple[Printed | None, ...]]:
+        """The measured columns of all tables, as the workbook orders them."""
+        every = {name: column for table in self.tables for name, column in table.measured.items()}
+        order = [each.name for each in self.workbook.measured]
+        return {name: every[name] for name in dict.fromkeys((*order, *every)) if name in every}
 
     @cached_property
-    def naming(self) -> tuple[str, ...]:
-        """The column of words that says which row is which: the first with a word for every test; or none."""
-        return tuple(name for name in self.remarks if all(self.texts[test][name] for test in self.tests))[:1]
+    def header_units(self) -> dict[str, str]:
+        """The units of all tables, as each has them."""
+        return {name: unit for table in self.tables for name, unit in table.header_units.items()}
 
-    def words(self, column: str) -> list[str]:
-        """As :func:`~loopsheet.report.inputs.groups.words`."""
-        return words(self.texts, self.left_out, column)
+    def on(self, axis: str) -> Measurements:
+        """The table that has the rows of an index set; of a method with one table it is that."""
+        named = [each for each in self.tables if each.name == axis]
+        return named[0] if named else self.only
 
-    def groups(self, column: str) -> dict[int, int]:
-        """As :func:`~loopsheet.report.inputs.groups.groups`."""
-        return groups(self.texts, self.left_out, column)
+    def of(self, name: str) -> Measurements:
+        """The table that a measured column stands in."""
+        return next(each for each in self.tables if name in each.measured)
 
-    def called(self, test: int) -> str:
-        """A row in a sentence: its number, and its name if it has one, ``3 (S-17)``."""
-        names = [self.rows[test][name] for name in self.naming]
-        return f"{test} ({names[0]})" if any(names) else str(test)
+    def beneath(self, axis: Axis | None) -> list[Measurements]:
+        """The tables whose rows those of an index set are made of."""
+        return [self.on(each.name) for each in with_parents((axis,)) if each.is_given]
+
+    @property
+    def only(self) -> Measurements:
+        """That of a method that has one table; without rows, where nothing is measured."""
+        (table,) = self.tables or (Measurements((), {}, {}),)
+        return table
+
+    @property
+    def left_out(self) -> Iterator[tuple[Measurements, LeftOut]]:
+        """The rows that take no part, each with its table."""
+        return ((table, each) for table in self.tables for each in table.left_out)
+
+    def with_numbers(self, measured: Mapping[str, tuple[Printed | None, ...]]) -> Inputs:
+        """The same with other numbers in the rows of some measured columns."""
+
+        def other(table: Measurements) -> Measurements:
+            every = table.measured.items()
+            return replace(table, measured={name: measured.get(name, column) for name, column in every})
+
+        return replace(self, tables=tuple(map(other, self.tables)))
 
     @property
     def amended(self) -> Inputs:
@@ -172,7 +180,7 @@ class Inputs:
             name: tuple(self.errata.get((name, row), printed) for row, printed in enumerate(column))
             for name, column in self.measured.items()
         }
-        return replace(self, measured=measured, errata={})
+        return replace(self.with_numbers(measured), errata={})
 
     @property
     def place(self) -> Location:
@@ -199,7 +207,7 @@ class Inputs:
         that were taken from another report. An empty cell has NaN.
         """
         if (taken := self.taken.get(name)) is not None:
-            own = alone(self.taken, self.measured)
+            own = alone(self.taken, self.of(name).measured)
             return tuple(taken.u(errors, own) for errors in taken.errors)
         return tuple(math.nan if each is None else each.u for each in self.printed(name))
 
@@ -267,7 +275,7 @@ class _Reader:
         if self.workbook and measurements is not None and "uncertainty" in toml.data:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
-        published = self.published(measurements.words if measurements else ())
+        published = self.published({word for table in measurements or () for word in table.every_word})
         expected = read_expected(self.tables)
         limits = read_limits(self.tables, self.workbook.margins if self.workbook else {})
         cards = read_cards(self.tables)
@@ -282,24 +290,17 @@ class _Reader:
             self.workbook,
             parameters,
             given,
-            measurements.tests,
-            measurements.measured,
-            measurements.header_units,
+            measurements,
             tuple(value for value in published if value.about is None),
             self.files,
             self.free,
             expected,
             errata,
             self.by_source,
-            measurements.left_out,
             uncertainty=uncertainty,
             published_u=tuple(value for value in published if value.about is not None),
             limits=limits,
             taken=self.taken,
-            heads=measurements.heads,
-            texts=measurements.texts,
-            remarks=measurements.remarks,
-            alike=measurements.alike,
             cards=cards,
         )
         if self.findings.found:
@@ -388,49 +389,65 @@ class _Reader:
 
     # ------------------------------------------------------------------ the tables
 
-    def measurements(self) -> Measurements | None:
-        if self.workbook is not None and not (self.workbook.measured or "measurements" in self.toml.data):
-            return Measurements((), {}, {})  # all that there is to give are parameters
-        if self.workbook is None and "measurements" not in self.toml.data:
-            return None  # it cannot be known whether there is anything to measure
-        table = self.tables.keys(("measurements",))
-        above = self.toml.data
-        missing = isinstance(above.get("measurements", {}), dict)
-        if "measurements" not in above:  # a misspelt header is one problem, not two
-            missing = not any(close(word, ["measurements"]) for word in above)
-        name = self.tables.text(("measurements",), "file", required=missing)
-        columns = self.workbook.measured if self.workbook else ()
+    def measurements(self) -> tuple[Measurements, ...] | None:
+        method, above = self.workbook, self.toml.data.get("measurements")
+        if above is None and not (method and method.measured):
+            # All that there is to give are parameters, or it cannot be known whether there is anything else.
+            return () if method else None
+        tables = method.row_tables if method else _named(above)
+        if tables[0].name:
+            self.tables.keys(("measurements",), [table.name for table in tables], alone=True)
+            if not isinstance(above or {}, dict):
+                return None
+        found = [self.rows_of(table) for table in tables]
+        return None if None in found else tuple(table for table in found if table)
+
+    def rows_of(self, of: RowTable) -> Measurements | None:
+        """Read one of the tables of rows."""
+        method, above = self.workbook, self.toml.data
+        table = self.tables.keys(of.place)
+        missing = True
+        for part in of.place:
+            if part not in above:  # a misspelt header is one problem, not two
+                missing = missing and not any(close(word, [part]) for word in above)
+            above = above.get(part, {})
+            if not isinstance(above, dict):
+                missing, above = False, {}
+        name = self.tables.text(of.place, "file", of.file if of.name else None, required=missing)
+        columns = method.columns_of(of) if method else ()
         names = [column.name for column in columns]
-        wanted = self.tables.keys(("measurements", "taken"), names) if "taken" in table and names else {}
-        known = [name for name in names if name not in wanted] if self.workbook else None
-        modes = self.modes("measurements", known) if "printed" in table else {}
+        wanted = self.tables.keys((*of.place, "taken"), names) if "taken" in table and names else {}
+        known = [name for name in names if name not in wanted] if method else None
+        modes = self.modes(of.place, known) if "printed" in table else {}
         if name is None:
             return None
-        at = self.toml.value("measurements", "file")
+        at = self.toml.value(*of.place, "file")
         source = self.source(
-            name, LARGEST_TABLE, "a first line with names and units, then one row a test", at
+            name, LARGEST_TABLE, f"a first line with names and units, then one row a {of.row}", at
         )
         if source is None:
             return None
-        if method := self.workbook:
-            said = method.measured, modes, self.findings, wanted, method.row, method.groups, method.least
-            found = read_measurements(source, *said)
-        else:
-            found = read_measurements(source, None, modes, self.findings, wanted)
+        others = {
+            column.name: f"the {table.name}, [{'.'.join(table.place)}]"
+            for table in (method.row_tables if method else ())
+            if table != of
+            for column in (method.columns_of(table) if method else ())
+        }
+        known_columns = columns if method else None
+        found = read_measurements(source, known_columns, modes, self.findings, wanted, of, others)
         return found and self.take_columns(found, wanted)
 
     def take_columns(self, measurements: Measurements, wanted: Mapping[str, object]) -> Measurements | None:
         """Take measured columns from the results of other reports; None, with findings, if one cannot be."""
         gone = [each.test for each in measurements.left_out]
-        every = rows(measurements.texts, measurements.left_out)
         named = {
-            column: {test: row.get(column, "") for test, row in every.items()}
+            column: {test: row.get(column, "") for test, row in measurements.rows.items()}
             for column in measurements.remarks
         }
-        columns = self.workbook.measured if self.workbook else ()
+        columns = self.workbook.columns_of(measurements.table) if self.workbook else ()
         taken = {}
         for of in (of for of in columns if of.name in wanted):
-            path, said = ("measurements", "taken", of.name), wanted[of.name]
+            path, said = (*measurements.table.place, "taken", of.name), wanted[of.name]
             if not isinstance(said, dict):
                 wrong_type(self.toml, self.findings, path, "a table", f"{of.name} = {TAKING}")
                 continue
@@ -443,18 +460,21 @@ class _Reader:
         return measurements.beside(known, [of.name for of in columns])
 
     def uncertainty(
-        self, parameters: dict[str, Printed], measurements: Measurements
-    ) -> tuple[Stated, dict[str, Printed], Measurements]:
+        self, parameters: dict[str, Printed], measurements: tuple[Measurements, ...]
+    ) -> tuple[Stated, dict[str, Printed], tuple[Measurements, ...]]:
         """Read what is stated of columns and parameters, and state it of their numbers."""
         declared = self.workbook.declared if self.workbook else {}
         single = {name: (printed,) for name, printed in parameters.items()}
-        numbers = {name: column for name, column in measurements.measured.items() if column}
-        tests = rows(measurements.texts, measurements.left_out)
-        stated = read_uncertainty(self.tables, numbers | single, declared, tests, self.said)
+        every = {name: column for table in measurements for name, column in table.measured.items()}
+        numbers = {name: every[name] for name in declared if every.get(name)}
+        stated = read_uncertainty(self.tables, numbers | single, declared, measurements, self.said)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
-        left_out = tuple(_with(stated, each, measurements.header_units) for each in measurements.left_out)
-        measured = stated.of(measurements.measured)
-        return stated, parameters, replace(measurements, measured=measured, left_out=left_out)
+
+        def said(table: Measurements) -> Measurements:
+            left_out = tuple(_with(stated, each, table.header_units) for each in table.left_out)
+            return replace(table, measured=stated.of(table.measured), left_out=left_out)
+
+        return stated, parameters, tuple(map(said, measurements))
 
     def take(self, said: Mapping[str, object], of: Declared) -> Printed | None:
         """Take a parameter from the result of another report."""
@@ -480,10 +500,12 @@ class _Reader:
         )
         return read_draws(source, of, self.findings) if source else None
 
-    def modes(self, of: str, known: list[str] | None) -> dict[str, str]:
+    def modes(self, of: tuple[str, ...], known: list[str] | None) -> dict[str, str]:
         """How the columns of a file were shortened, where it was not by rounding."""
-        path = (of, "printed")
-        written = self.toml.data[of]["printed"]
+        path = (*of, "printed")
+        written: Any = self.toml.data
+        for key in path:
+            written = written[key]
         table = self.tables.keys(
             path, written if known is None and isinstance(written, dict) else known or ()
         )
@@ -499,7 +521,7 @@ class _Reader:
                 modes[column] = mode
         return modes
 
-    def errata(self, measurements: Measurements) -> dict[tuple[str, int], Printed]:
+    def errata(self, measurements: Sequence[Measurements]) -> dict[tuple[str, int], Printed]:
         """Read what measured cells would have to be printed as: ``"x_p[2]" = "29.8"``."""
         path = ("published", "errata")
         table = self.toml.data.get("published", {}).get("errata", {})
@@ -513,7 +535,8 @@ class _Reader:
             place = self.cell(address, measurements, self.toml.key(*path, address))
             if text is None or place is None:
                 continue
-            printed = measurements.measured[place[0]][place[1]]
+            of = next(table for table in measurements if place[0] in table.measured)
+            printed = of.measured[place[0]][place[1]]
             if printed is None:
                 at = self.toml.key(*path, address)
                 self.findings.add("LS506", at, name=place[0], text=place[1], known="rows with a number")
@@ -526,14 +549,17 @@ class _Reader:
                 self.findings.add(error.code, self.toml.value(*path, address), name=address, **error.fields)
         return found
 
-    def cell(self, address: str, measurements: Measurements, at: Location) -> tuple[str, int] | None:
+    def cell(
+        self, address: str, measurements: Sequence[Measurements], at: Location
+    ) -> tuple[str, int] | None:
         """Return column and row of a measured cell, ``x_p[2]``."""
         name, index = parts(address) or (address, "")
-        columns, tests = measurements.measured, list(map(str, measurements.tests))
+        columns = {column: table for table in measurements for column in table.measured}
+        tests = list(map(str, columns[name].tests)) if name in columns else []
         if name not in columns:
             known, suggestion = listing(columns), suggest(name, columns)
             self.findings.add("LS505", at, text=name, known=known, suggestion=suggestion)
-        elif index in [str(each.test) for each in measurements.left_out]:
+        elif index in [str(each.test) for each in columns[name].left_out]:
             pass  # it is misprinted in a row that nothing is computed from
         elif index not in tests:
             self.findings.add("LS506", at, name=name, text=index, known=listing(tests))
@@ -560,11 +586,19 @@ class _Reader:
         if source is None:
             return ()
         values = read_published(source, self.findings, words)
-        modes = self.modes("published", list({v.cell: v for v in values})) if "printed" in table else {}
+        modes = self.modes(("published",), list({v.cell: v for v in values})) if "printed" in table else {}
         return tuple(
             replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))
             for value in values
         )
+
+
+def _named(section: object) -> tuple[RowTable, ...]:
+    """The tables that a folder has, where the workbook that should say so is not known."""
+    own = fixed("measurements")
+    every = section.items() if isinstance(section, dict) else ()
+    names = [name for name, said in every if name not in own and isinstance(said, dict)]
+    return tuple(map(RowTable, names)) or (RowTable(),)
 
 
 def _with(said: Stated, test: LeftOut, units: Mapping[str, str]) -> LeftOut:

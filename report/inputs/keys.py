@@ -73,6 +73,11 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
         "file": Key('"measurements.csv"', "The table, within the folder.", True),
         "printed": Key('{ v = "truncated" }', "Columns whose digits were cut off; else they were rounded."),
         "taken": Key("[measurements.taken]", "Columns that another report computed."),
+        ANY: Key(
+            "[measurements.samples]",
+            "Where a method has several tables of rows: each under its name, with `file`, `printed` and "
+            "`taken` of its own, and none of these above it.",
+        ),
     },
     ("measurements", "taken"): {
         ANY: Key(
@@ -174,5 +179,9 @@ PUBLISHED = {
 
 
 def fixed(*table: str) -> tuple[str, ...]:
-    """The keys of a table of report.toml that are called so in all folders; none of an open one."""
-    return tuple(key for key in TABLES.get(table, {}) if key != ANY)
+    """The keys of a table of report.toml that are called so in all folders; none of an open one.
+
+    One of several tables of rows has those that the only one has.
+    """
+    one_of_several = len(table) == 2 and table[0] == "measurements" and table not in TABLES
+    return tuple(key for key in TABLES.get(table[:1] if one_of_several else table, {}) if key != ANY)

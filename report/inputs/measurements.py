@@ -6,11 +6,14 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
 from ..distribution import Error
-from ..messages.errors import Findings, close
+from ..messages.errors import Findings, close, listing
+from ..workbook import RowTable
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
 from .number_text import NumberError, read_printed, read_value
 from .spelling import Alike, alike, in_case, same
@@ -68,27 +71,74 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Measurements:
-    """The checked table: test numbers, and a printed number for each test and measured column.
-
-    What is left out stands apart from them. A unit is that of a column or, called ``u(x_p)``, of its
-    uncertainties. The heads are the first line as it stands, the texts the rows of the tests, by column.
-    Remarks are columns of words, which only come along. Some words that say which rows belong together may be
-    others misspelt: alike.
-    """
+    """A checked table: test numbers, and a printed number for each test and measured column."""
 
     tests: tuple[int, ...]
+    """The numbers of its rows, in the order of the file."""
     measured: dict[str, tuple[Printed | None, ...]]
+    """One number a row for each measured column; None where the cell is empty."""
     header_units: dict[str, str]
+    """The unit of each measured column, as written in the header, and of the column of its uncertainties,
+    which is called ``u(x_p)``."""
     left_out: tuple[LeftOut, ...] = ()
+    """The rows that take no part, each with its reason; all else is about the others."""
     heads: dict[str, str] = field(default_factory=dict)
+    """The first line as it stands, by what it names."""
     texts: dict[int, dict[str, str]] = field(default_factory=dict)
+    """Each row as it stands, by column; one that is left out stands with that."""
     remarks: tuple[str, ...] = ()
+    """The columns of words that come along; nothing is computed from them."""
     alike: tuple[Alike, ...] = ()
+    """Words by which rows belong together, and that may be others misspelt."""
+    table: RowTable = field(default_factory=RowTable)
+    """What the workbook says of it."""
+    file: str = "measurements.csv"
+    """Where it stands, from the folder."""
 
     @property
-    def words(self) -> set[str]:
+    def name(self) -> str:
+        """The index set of its rows; none of the only table."""
+        return self.table.name
+
+    @property
+    def row(self) -> str:
+        """What its rows are called."""
+        return self.table.row
+
+    @property
+    def every_word(self) -> set[str]:
         """Those in columns of words."""
         return {row[name] for row in self.texts.values() for name in self.remarks if row[name]}
+
+    @cached_property
+    def rows(self) -> Mapping[int, Mapping[str, str]]:
+        """Each row as it stands, by column, those that are left out last."""
+        return {**self.texts, **{each.test: each.texts for each in self.left_out}}
+
+    @cached_property
+    def naming(self) -> tuple[str, ...]:
+        """The column of words that says which row is which: the first with a word for each; or none."""
+        return tuple(name for name in self.remarks if all(self.texts[test][name] for test in self.tests))[:1]
+
+    def called(self, test: int) -> str:
+        """A row in a sentence: its number, and its name if it has one, ``3 (S-17)``."""
+        names = [self.rows[test][name] for name in self.naming]
+        return f"{test} ({names[0]})" if any(names) else str(test)
+
+    def words(self, column: str) -> list[str]:
+        """The words of a column in the order in which they first appear, in rows that are left out too.
+
+        `column`: by which the workbook groups.
+        """
+        found = [row[column] for row in self.texts.values()]
+        for each in self.left_out:
+            found.insert(each.place, each.texts[column])
+        return list(dict.fromkeys(found))
+
+    def groups(self, column: str) -> dict[int, int]:
+        """The number of each row's word, from 1: whatever is left out, others keep theirs."""
+        number = {word: place for place, word in enumerate(self.words(column), start=1)}
+        return {test: number[row[column]] for test, row in self.rows.items()}
 
     def beside(self, taken: Mapping[str, Taken], order: Iterable[str]) -> Measurements:
         """The same with columns that were taken from other reports, all in the order of their names."""
@@ -128,9 +178,8 @@ def read_measurements(
     modes: Mapping[str, str],
     findings: Findings,
     elsewhere: Collection[str] = (),
-    called: str = "test",
-    groups: Collection[str] = (),
-    least: int = 2,
+    of: RowTable | None = None,
+    others: Mapping[str, str] = MappingProxyType({}),
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -147,26 +196,26 @@ def read_measurements(
         Where findings go.
     elsewhere : collection of str
         The columns that are taken from other reports: they must not stand here.
-    called : str
-        What else the column of the tests' numbers may be called. Without it, rows are numbered as they stand.
-    groups : collection of str
-        The columns of words that say which rows belong together.
-    least : int
-        How many rows there must be.
+    of : RowTable or None
+        What the workbook says of its rows: what else the column of their numbers may be called (without it,
+        they are numbered as they stand), which columns of words group them, how many there must be.
+    others : mapping of str to str
+        The columns of other tables, and where these stand: they are not looked for here.
     """
+    of = of or RowTable()
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
-    required = {"test": called, **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
+    required = {"test": of.row, **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}
     table = read_table(source, list(required.values()), findings, semicolons=True)
     if table is None:
         return None
-    reading = _Reading(source, table, columns, findings, called, groups)
+    reading = _Reading(source, table, columns, findings, of.row, of.groups, others)
     reading.find(None if measured is None else required, elsewhere)
     if measured is None and "test" not in reading.places:
         return None  # its rows may be called as the workbook says, which is not known
     tests, reasons = reading.tests(), reading.fields(LEFT_OUT)
     gone = {place for place, reason in enumerate(reasons) if reason.text}
-    reading.count(len(gone), least)
+    reading.count(len(gone), of.least)
     near = reading.alike(tests)
     used = [row for place, row in enumerate(table.rows) if place not in gone]
     values = reading.values(used, modes)
@@ -183,7 +232,8 @@ def read_measurements(
     lines = dict(zip(taken, map(reading.texts, used), strict=True))
     first = {name: table.header[place].text for name, place in reading.places.items()}
     units = {each.name: (each.unit or "").strip() or "1" for each in reading.with_units}
-    return Measurements(taken, values, units, left_out, first, lines, reading.remarks, near)
+    more = reading.remarks, near, of, source.name
+    return Measurements(taken, values, units, left_out, first, lines, *more)
 
 
 @dataclass
@@ -196,6 +246,7 @@ class _Reading:
     findings: Findings
     called: str
     groups: Collection[str]
+    others: Mapping[str, str]
 
     def __post_init__(self) -> None:
         """Read the first line."""
@@ -231,8 +282,13 @@ class _Reading:
         self.places = match_columns(self.table, names, required, optional, self.findings, {"test": called})
 
     def _here(self, place: int, name: str, elsewhere: Collection[str]) -> str:
-        """The name in a field of the first line; none, with a finding, where its column is taken."""
+        """The name in a field of the first line; none, with a finding, where its column stands elsewhere."""
         of = name.removeprefix("u(").removesuffix(")")
+        if of in self.others:
+            known, hint = listing(self.columns), f"{of} is a column of {self.others[of]}: it belongs there"
+            at = self.table.at(self.table.header[place])
+            self.findings.add("LS303", at, text=name, known=known, suggestion=hint)
+            return ""
         if of not in elsewhere:
             return name
         hint = f"leave out this column, or what [measurements.taken] says of {of}"

@@ -164,15 +164,13 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
     taken = {name: taken for name, taken in inputs.taken.items() if name not in said}
     return replace(
         inputs,
-        tests=tests,
-        measured=stated.of(measured),
+        tables=(replace(inputs.only, tests=tests, measured=stated.of(measured), left_out=()),),
         parameters={name: printed for name, (printed,) in stated.of(parameters).items()},
         uncertainty=stated,
         published=(),
         published_u=(),
         aside=(),
         expected=(),
-        left_out=(),
         limits=(),
         errata={},
         free_at={},
@@ -182,7 +180,7 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
 
 def _again(group: tuple[int, ...], inputs: Inputs, like: Sequence[int]) -> tuple[int, ...]:
     """The planned tests that are like those of a group."""
-    return tuple(test for test, row in enumerate(like, start=1) if inputs.tests[row] in group)
+    return tuple(test for test, row in enumerate(like, start=1) if inputs.only.tests[row] in group)
 
 
 def _taken_again(

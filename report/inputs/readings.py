@@ -14,6 +14,7 @@ from .stated import covariance
 
 if TYPE_CHECKING:
     from ..quantity import Printed
+    from .measurements import Measurements
     from .tables import TomlTables
 
 __all__ = ["correlations_of", "read_paired"]
@@ -31,7 +32,10 @@ def correlations_of(columns: Mapping[str, Sequence[Printed]]) -> dict[tuple[str,
 
 
 def read_paired(
-    tables: TomlTables, section: str, numbers: Mapping[str, Sequence[Printed | None]]
+    tables: TomlTables,
+    section: str,
+    numbers: Mapping[str, Sequence[Printed | None]],
+    measured: Sequence[Measurements],
 ) -> tuple[str, ...]:
     """The columns of repeated readings that were taken together; none, with a finding, if that is wrong."""
     path = (section, "paired")
@@ -40,6 +44,8 @@ def read_paired(
         wrong_type(tables.toml, tables.findings, path, "a list of columns", 'paired = ["V", "I"]')
         return ()
     columns = [name for name, column in numbers.items() if len(column) > 1]
+    beside = next((table.measured for table in measured if written and written[0] in table.measured), {})
+    columns = [name for name in columns if name in beside or not beside]
     wrong = [name for n, name in enumerate(written) if name not in columns or name in written[:n]]
     if wrong or len(written) < 2:
         known = f"two or more of {listing(columns)}, each once, with two rows or more"

@@ -25,16 +25,16 @@ class TomlTables:
     def __init__(self, toml: TomlFile, findings: Findings) -> None:
         self.toml, self.findings = toml, findings
 
-    def keys(self, table: tuple[str, ...], own: Iterable[str] = ()) -> dict[str, Any]:
+    def keys(self, table: tuple[str, ...], own: Iterable[str] = (), alone: bool = False) -> dict[str, Any]:
         """Return a table after a look at its keys; an absent one, or no table at all, is empty.
 
         `table`: its place, one of :data:`~loopsheet.report.inputs.keys.TABLES`. `own`: what there may be
-        besides: names of the folder's own.
+        besides, names of the folder's own; `alone`: in place of all others.
         """
         data: Any = self.toml.data
         for name in table:
             data = data.get(name, {})
-        known = (*own, *fixed(*table))
+        known = (*own, *(() if alone else fixed(*table)))
         where = "[" + ".".join(table) + "]" if table else "report.toml"
         if not isinstance(data, dict):
             # A key above the first table header and a table of the same name look alike to a beginner.

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..distribution import Error, Shape
     from ..messages.errors import Location
     from ..quantity import Printed
-    from .groups import Texts
+    from .measurements import Measurements
     from .number_text import Declared
     from .tables import TomlTables
 
@@ -130,7 +130,7 @@ def read_uncertainty(
     tables: TomlTables,
     numbers: Numbers,
     declared: Mapping[str, Declared],
-    tests: Texts,
+    measured: Sequence[Measurements],
     said: Conventions,
 ) -> Stated:
     """Read the section; what is wrong with it is told where it stands.
@@ -143,14 +143,14 @@ def read_uncertainty(
         What was given, by column and parameter; None where a cell is empty.
     declared : mapping of str to Declared
         What the workbook says of them.
-    tests : mapping of int to mapping of str to str
-        The rows, by column: a word there may say which of them share an error.
+    measured : sequence of Measurements
+        The tables of rows: a word in one may say which of its rows share an error.
     said : Conventions
         What the folder says of all uncertainties.
     """
-    reader = _Reader(tables, numbers, declared, tests, said)
+    reader = _Reader(tables, numbers, declared, measured, said)
     written = tables.keys((SECTION,), numbers)
-    paired = read_paired(tables, SECTION, numbers) if "paired" in written else ()
+    paired = read_paired(tables, SECTION, numbers, measured) if "paired" in written else ()
     columns = {name: reader.column(name) for name in written if name in numbers}
     columns |= {name: reader.of_readings(name, name in columns) for name in paired}
     shared = [reader.shared(name) for name in reader.names("shared")]
@@ -179,10 +179,11 @@ class _Reader:
         tables: TomlTables,
         numbers: Numbers,
         declared: Mapping[str, Declared],
-        tests: Texts,
+        measured: Sequence[Measurements],
         said: Conventions,
     ) -> None:
-        self.tables, self.declared, self.tests = tables, declared, tests
+        self.tables, self.declared = tables, declared
+        self.of_rows = {name: table for table in measured for name in table.measured}
         self.numbers = {name: there(column) for name, column in numbers.items()}
         self.rows = {name: len(column) for name, column in numbers.items()}
         self.said = said
@@ -277,7 +278,7 @@ class _Reader:
             self.findings.add("LS506", self.toml.key(*path, "groups"), name=of, text="groups", known=known)
             groups = None
         elif "groups" in written:
-            groups = self.groups((*path, "groups"))
+            groups = self.groups((*path, "groups"), self.of_rows[of].rows)
         if statement is None or groups is None:
             return None
         if len(statement.parts) != 1:
@@ -286,13 +287,15 @@ class _Reader:
             return None
         return SharedError(name, of, statement, groups)
 
-    def groups(self, path: tuple[str, ...]) -> tuple[tuple[int, ...], ...] | None:
+    def groups(
+        self, path: tuple[str, ...], rows: Mapping[int, Mapping[str, str]]
+    ) -> tuple[tuple[int, ...], ...] | None:
         """Lists of tests, of which none stands in two; or those that have the same word in a column."""
         written: Any = self.toml.data
         for key in path:
             written = written[key]
         if isinstance(written, str):
-            return self.of_words(path, written)
+            return self.of_words(path, written, rows)
         lists = isinstance(written, list) and all(isinstance(group, list) and group for group in written)
         if not written or not lists or not all(type(test) is int for group in written for test in group):
             example = "groups = [[1, 2], [3, 4]]"
@@ -305,23 +308,25 @@ class _Reader:
                 hint = "a row has one error of this name: it stands in one group"
                 self.findings.add("LS433", self.toml.value(*path), name=f"{test} in groups", suggestion=hint)
                 return None
-            if test not in self.tests:
-                known = listing(map(str, self.tests)) + ", each once"
+            if test not in rows:
+                known = listing(map(str, rows)) + ", each once"
                 self.findings.add("LS506", self.toml.value(*path), name="groups", text=test, known=known)
                 return None
             seen.add(test)
         return tuple(map(tuple, written))
 
-    def of_words(self, path: tuple[str, ...], column: str) -> tuple[tuple[int, ...], ...] | None:
+    def of_words(
+        self, path: tuple[str, ...], column: str, rows: Mapping[int, Mapping[str, str]]
+    ) -> tuple[tuple[int, ...], ...] | None:
         """The tests of each word of a column; where there is none, a test is of no group."""
-        columns = next(iter(self.tests.values()))
+        columns = next(iter(rows.values()))
         if column not in columns:
             known, like = f"a column of the table: {listing(columns)}", suggest(column, columns)
             at, table = self.toml.value(*path), ".".join(path)
             self.findings.add("LS203", at, text=column, table=table, known=known, suggestion=like)
             return None
         found: dict[str, list[int]] = {}
-        for test, row in self.tests.items():
+        for test, row in rows.items():
             found.setdefault(row[column], []).append(test)
         return tuple(tuple(tests) for word, tests in found.items() if word)
 
@@ -360,7 +365,8 @@ class _Reader:
                 raise NumberError("LS434")
         except NumberError:
             return f"'{text}' is no correlation coefficient"
-        if len({self.rows[name] for name in pair}) != 1:
+        tables = {self.of_rows[name].name for name in pair if name in self.of_rows}
+        if len({self.rows[name] for name in pair}) != 1 or len(tables) > 1:
             return f"{' and '.join(pair)} have not the same rows"
         if odd := [name for name in pair if name in several]:
             return f"the numbers of {odd[0]} have not one error each"

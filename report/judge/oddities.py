@@ -28,6 +28,7 @@ from .suspects import outliers, suspected
 if TYPE_CHECKING:
     from ..inputs.expected import OfCell
     from ..inputs.inputs import Inputs
+    from ..inputs.measurements import Measurements
     from ..inputs.uncertainty import SharedError
     from ..quantity import Printed
     from ..result.result import Report
@@ -71,12 +72,12 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
             *(each.name for each in workbook.curves),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
-        WORDS: [*workbook.groups, *_taken(inputs)],
+        WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
         SCATTERS: [*_unmoved(inputs), *(name for name, _ in _scattering(sheet, inputs))],
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
-        LEFT_OUT: [f"{workbook.row} {each.test}" for each in inputs.left_out],
+        LEFT_OUT: [f"{table.row} {each.test}" for table, each in inputs.left_out],
     }
 
 
@@ -135,7 +136,6 @@ class _Oddities:
 
     def __init__(self, report: Report) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
-        self.rows = next((a.name for a in self.sheet.axes if not a.parents), "")
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
         self.failed = _Odd(self, report.faults)
         self.outside = {
@@ -161,7 +161,7 @@ class _Oddities:
         yield from (self.of_squares(each) for each in self.report.workbook.squares if each.asked)
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
-        yield from map(self.of_words, self.inputs.workbook.groups)
+        yield from (self.of_words(table, each) for table in self.inputs.tables for each in table.table.groups)
         yield from map(self.of_taken, _taken(self.inputs))
         yield from map(self.of_resolution, _unmoved(self.inputs))
         yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
@@ -175,13 +175,15 @@ class _Oddities:
         for row in np.flatnonzero(marks.outside(margin) & marks.telling(margin)).tolist():
             yield self.values.cell(margin.of.name, labels[row])
 
-    def pairs(self, cells: Iterable[Cell]) -> set[tuple[int, ...]]:
+    def pairs(self, cells: Iterable[Cell]) -> set[tuple[tuple[str, int], ...]]:
         """The tests of the rows that rest on several."""
         return {tests for cell in cells if len(tests := self.values.tests(cell)) > 1}
 
     def reason(self, cell: Cell, says: str) -> str:
         """Why somebody expects what is said of a cell; empty if nobody does. A loop rests on all tests."""
-        found, tests = "", self.inputs.tests if cell.name in self.sheet.loop_of else self.values.tests(cell)
+        found, tests = "", self.values.tests(cell)
+        if cell.name in self.sheet.loop_of:
+            tests = tuple((table.name, test) for table in self.inputs.tables for test in table.tests)
         for each in self.inputs.expected:
             if each.covers(cell.name, cell.label, tests):
                 self.met[each.address].append(f"{cell.address} {says}")
@@ -203,12 +205,13 @@ class _Oddities:
 
     def exact(self) -> Iterator[str]:
         """The tests whose numbers are all stated to be exact, where a fit weighs by what is stated."""
-        weighed = self.sheet.weighed
-        of = _some(list(weighed.values()))
-        for row, test in enumerate(self.inputs.tests):
-            if weighed and not any(self.values.value[name][row] for name in weighed):
-                said = f"{self.inputs.workbook.row} {self.inputs.called(test)} has {of} without uncertainty"
-                yield f"{said}, so that no other {self.inputs.workbook.row} would count beside it"
+        for table in self.inputs.tables:
+            weighed = {name: of for name, of in self.sheet.weighed.items() if of in table.measured}
+            of = _some(list(weighed.values()))
+            for row, test in enumerate(table.tests):
+                if weighed and not any(self.values.value[name][row] for name in weighed):
+                    said = f"{table.row} {table.called(test)} has {of} without uncertainty"
+                    yield f"{said}, so that no other {table.row} would count beside it"
 
     def without_value(self, column: Column, cells: Sequence[Cell]) -> str:
         """``alpha: 4 of 10 pairs have no value: alpha[1-2] and alpha[2-3] #NOROOT!: ...``."""
@@ -224,8 +227,10 @@ class _Oddities:
     def named(self, cell: Cell) -> str:
         """A cell by its address, with the name of its row if that has one: ``w[3] (S-17)``."""
         axis = self.sheet[cell.name].axis
-        names = self.inputs.naming if axis is not None and axis.is_given else ()
-        return " ".join((cell.address, *(f"({self.inputs.rows[cell.label[0]][name]})" for name in names)))
+        if axis is None or not axis.is_given:
+            return cell.address
+        table = self.inputs.on(axis.name)
+        return " ".join((cell.address, *(f"({table.rows[cell.label[0]][name]})" for name in table.naming)))
 
     def size(self, column: Column) -> str:
         axis = column.axis
@@ -361,8 +366,8 @@ class _Oddities:
         """What is left of a sum of squares without the rows that lie off, as they were found one by one."""
         found = outliers(self.report, squares)
         told = ", then ".join(
-            f"{self.numbered([each.test])} (farthest of {each.among}, {rounded(each.deviation, 2).plain} "
-            f"standard deviations off: {probability(each.chance)})"
+            f"{self.numbered(self.inputs.only, [each.test])} (farthest of {each.among}, "
+            f"{rounded(each.deviation, 2).plain} standard deviations off: {probability(each.chance)})"
             for each in found
         )
         left = (
@@ -414,22 +419,23 @@ class _Oddities:
 
     def of_groups(self, shared: SharedError) -> Check:
         """Whether every row is in a group of an error that groups share."""
-        rest = [test for test in self.inputs.tests if not any(test in group for group in shared.groups)]
-        row = self.inputs.workbook.row
+        table = self.inputs.of(shared.of)
+        rest = [test for test in table.tests if not any(test in group for group in shared.groups)]
+        row = table.row
         if not rest:
             said = f"{shared.name}: every {row} is in a group"
             return Check(GROUPS, shared.name, True, said, self.inputs.place)
-        which = f"{self.numbered(rest)} {'is' if len(rest) == 1 else 'are'}"
+        which = f"{self.numbered(table, rest)} {'is' if len(rest) == 1 else 'are'}"
         said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one {row}"
         return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
 
-    def of_words(self, column: str) -> Check:
+    def of_words(self, table: Measurements, column: str) -> Check:
         """Whether a word by which rows belong together may be another one misspelt."""
-        found = [each for each in self.inputs.alike if each.column == column]
+        found = [each for each in table.alike if each.column == column]
         if not found:
             return self.of_numbers(column)
         told = [
-            f"'{word}' ({self.numbered(rows)}) is nearly '{other}' ({self.numbered(others)})"
+            f"'{word}' ({self.numbered(table, rows)}) is nearly '{other}' ({self.numbered(table, others)})"
             for _, word, rows, other, others, _ in found
         ]
         said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"
@@ -473,20 +479,18 @@ class _Oddities:
         whole = float(np.std(every, ddof=1)) if every.size > 1 else 0.0
         about = f"about the mean of their own {axis.by}"
         if whole**2 * dof <= REACH**2 * within:
-            said = f"{name}: {self.rows} scatter as much {about} as about that of all"
+            said = f"{name}: {axis.of.name} scatter as much {about} as about that of all"
             return Check(SCATTERS, name, True, said, self.inputs.place)
         unit = behind(self.report.shown[name].unit)
         size, own = (self.report.sure(name, each).text + unit for each in (whole, math.sqrt(within / dof)))
-        said = (
-            f"{name}: {SCATTER} is {size}, of all {self.rows} about one mean; {about} they scatter by {own}: "
-        )
-        said += f'"u = {own}, dof = {dof}" says so'
+        said = f"{name}: {SCATTER} is {size}, of all {axis.of.name} about one mean; "
+        said += f'{about} they scatter by {own}: "u = {own}, dof = {dof}" says so'
         return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
 
-    def numbered(self, rows: Sequence[int]) -> str:
+    def numbered(self, table: Measurements, rows: Sequence[int]) -> str:
         """``run 2``, ``runs 1 and 3``."""
-        row = self.inputs.workbook.row if len(rows) == 1 else self.rows
-        return f"{row} {_some(list(map(str, rows)))}"
+        every = table.name or next((axis.name for axis in self.sheet.axes if not axis.parents), "")
+        return f"{table.row if len(rows) == 1 else every} {_some(list(map(str, rows)))}"
 
     def of_constants(self, cell: str, constants: Sequence[str]) -> Check:
         """That a result rests on constants whose errors are not independent."""
@@ -514,21 +518,21 @@ class _Oddities:
 
     def of_left_out(self) -> Iterator[Check]:
         """The tests that somebody left out, and what is not compared for that."""
-        for each in self.inputs.left_out:
-            said = f"{self.inputs.workbook.row} {self.inputs.called(each.test)}, {each.reason}"
-            if rests := sum(each.test in value.index for value in self.inputs.aside):
+        for table, each in self.inputs.left_out:
+            said = f"{table.row} {table.called(each.test)}, {each.reason}"
+            aside = ((value, self.sheet[value.columns[0]].axis) for value in self.inputs.aside)
+            if rests := sum(each.test in v.index and table in self.inputs.beneath(on) for v, on in aside):
                 said += f"; {rests} published {'value rests' if rests == 1 else 'values rest'} on it"
-            yield Check(
-                LEFT_OUT, f"{self.inputs.workbook.row} {each.test}", True, said, each.at, note="left out"
-            )
+            yield Check(LEFT_OUT, f"{table.row} {each.test}", True, said, each.at, note="left out")
 
     def check(self, kind: str, name: str, said: str, odd: _Odd, where: str = "") -> Check:
         """A check that found something: with the test to look at, or with why it is expected."""
         if not odd.open:
             return Check(kind, name, True, f"{said}, as is expected", self.inputs.place)
-        if self.is_due_to_suspect(odd.open):
-            first = f"{self.inputs.workbook.row} {self.inputs.called(self.suspect)}"
-            said += f"; look at {first} first: {self.because}"
+        if self.suspect and self.is_due_to_suspect(odd.open):
+            axis, test = self.suspect
+            table = self.inputs.on(axis)
+            said += f"; look at {table.row} {table.called(test)} first: {self.because}"
         warns = kind in (LIMIT, UNCERTAINTY, SQUARES)
         at = self.at(where) if where else self.place(odd.open)
         return Check(kind, name, warns, said, at, note="warning" * warns)
@@ -542,9 +546,10 @@ class _Oddities:
     def place(self, cells: Sequence[Cell]) -> Location:
         """Where the first cell was printed, or the first number of the test to look at; else report.toml."""
         printed = self.printed(cells[0])
-        if printed is None and self.is_due_to_suspect(cells):
-            row = self.inputs.tests.index(self.suspect)
-            columns = self.inputs.measured.items()
+        if printed is None and self.suspect and self.is_due_to_suspect(cells):
+            axis, test = self.suspect
+            table = self.inputs.on(axis)
+            row, columns = table.tests.index(test), table.measured.items()
             printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)
         return self.inputs.place if printed is None else self.at(printed.where, len(printed.text))
 

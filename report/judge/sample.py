@@ -13,6 +13,7 @@ from dataclasses import replace
 from ..cells.layout import how_large, lay_out
 from ..cells.values import Values
 from ..inputs.inputs import Inputs
+from ..inputs.measurements import Measurements
 from ..sheet import RepeatAxis, Sheet
 
 __all__ = ["part", "with_own"]
@@ -38,13 +39,19 @@ def part(inputs: Inputs, values: Values, most: int) -> Inputs:
     """
     if how_large(values.sheet, values.layouts) <= most:
         return inputs
-    chosen = _drawn(inputs, _how_many(values, inputs.tests, most))
+    number = _how_many(values, max(len(table.tests) for table in inputs.tables), most)
+    chosen = {table.name: _drawn(table, number) for table in inputs.tables}
+
+    def some(table: Measurements) -> Measurements:
+        rows = chosen[table.name]
+        columns = {name: tuple(column[row] for row in rows) for name, column in table.measured.items()}
+        return replace(table, tests=tuple(table.tests[row] for row in rows), measured=columns)
+
     return replace(
         inputs,
-        tests=tuple(inputs.tests[row] for row in chosen),
-        measured={name: tuple(column[row] for row in chosen) for name, column in inputs.measured.items()},
+        tables=tuple(map(some, inputs.tables)),
         taken={
-            name: taken.of(chosen) if name in inputs.measured else taken
+            name: taken.of(chosen[inputs.of(name).name]) if name in inputs.measured else taken
             for name, taken in inputs.taken.items()
         },
         published=(),
@@ -53,32 +60,32 @@ def part(inputs: Inputs, values: Values, most: int) -> Inputs:
     )
 
 
-def _how_many(values: Values, tests: tuple[int, ...], most: int) -> int:
-    """How many tests make no more cells; doubled first, so that no large sheet is laid out."""
+def _how_many(values: Values, tests: int, most: int) -> int:
+    """How many tests of a table make no more cells; doubled first, so that no large sheet is laid out."""
     few, many = FEWEST, 2 * FEWEST
-    while many < len(tests) and _size(values, tests[:many]) <= most:
+    while many < tests and _size(values, many) <= most:
         few, many = many, 2 * many
-    many = min(many, len(tests))
+    many = min(many, tests)
     while many - few > 1:
         middle = (few + many) // 2
-        few, many = (middle, many) if _size(values, tests[:middle]) <= most else (few, middle)
+        few, many = (middle, many) if _size(values, middle) <= most else (few, middle)
     return few
 
 
-def _size(values: Values, tests: tuple[int, ...]) -> int:
+def _size(values: Values, tests: int) -> int:
     sheet = values.sheet
-    labels = {name: own[: len(tests)] for name, own in values.given_labels.items()}
+    labels = {name: own[:tests] for name, own in values.given_labels.items()}
     repeats = [axis.count for axis in sheet.axes if isinstance(axis, RepeatAxis)]
     return how_large(sheet, lay_out(sheet, labels, {name: int(values.scalar(name)) for name in repeats}))
 
 
-def _drawn(inputs: Inputs, number: int) -> list[int]:
-    """So many rows, in the order of the table; drawn by the digits that were measured."""
+def _drawn(table: Measurements, number: int) -> list[int]:
+    """So many rows, or all, in the order of the table; drawn by the digits that were measured."""
     digits = "\n".join(
         f"{name} {' '.join(each.text if each else '' for each in column)}"
-        for name, column in inputs.measured.items()
+        for name, column in table.measured.items()
     )
-    lots = [hashlib.sha256(f"{test}\n{digits}".encode()).digest() for test in inputs.tests]
+    lots = [hashlib.sha256(f"{test}\n{digits}".encode()).digest() for test in table.tests]
     return sorted(sorted(range(len(lots)), key=lots.__getitem__)[:number])
 
 

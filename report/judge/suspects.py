@@ -20,25 +20,28 @@ if TYPE_CHECKING:
 
 __all__ = ["Outlier", "outliers", "suspected"]
 
-Tests = tuple[int, ...]
+Tests = tuple[tuple[str, int], ...]
+"""Each with the index set that it is of."""
 MOST_ALIKE = 3
 """Of so many tests that are equally odd, one is sought; the three of three pairs are as many."""
 
 
-def suspected(report: Report, odd: Collection[Tests], failed: Collection[Tests]) -> tuple[int, str]:
+def suspected(
+    report: Report, odd: Collection[Tests], failed: Collection[Tests]
+) -> tuple[tuple[str, int] | None, str]:
     """The test on which most odd rows rest; of several, most that failed; then which moves the result most.
 
     Parameters
     ----------
-    odd : collection of tuple of int
-        The numbers of the tests of each odd row.
-    failed : collection of tuple of int
+    odd : collection of tuple
+        The tests of each odd row.
+    failed : collection of tuple
         Of those without a value.
 
     Returns
     -------
-    int
-        The number of the test; 0 if there is none.
+    tuple of str and int, or None
+        The test, with the index set that it is of.
     str
         Why it is that one.
     """
@@ -51,37 +54,48 @@ def suspected(report: Report, odd: Collection[Tests], failed: Collection[Tests])
         return first[
             0
         ], f"{number} of {size} odd pairs rest on it" if number < size else "every odd pair rests on it"
-    return _furthest(report, first) if 0 < len(first) <= MOST_ALIKE else (0, "")
+    return _furthest(report, first) if 0 < len(first) <= MOST_ALIKE else (None, "")
 
 
-def _furthest(report: Report, tests: Sequence[int]) -> tuple[int, str]:
+def _furthest(report: Report, tests: Sequence[tuple[str, int]]) -> tuple[tuple[str, int] | None, str]:
     """The test without which the first sum of the result moves furthest."""
     headline = (report.sheet[name] for name in report.workbook.headline if name in report.sheet)
     column = next((one for one in headline if one.axis is None and report.sheet.summed_axes(one)), None)
     if column is None or (before := report.values.cell(column.name).value) is None:
-        return 0, ""
+        return None, ""
     # One draw for each suspect, in which its measured cells are missing: one evaluation for all.
-    without = np.array([[test == other for other in report.inputs.tests] for test in tests])
+    without = {
+        table.name: np.array(
+            [
+                [number == other and report.inputs.on(axis) is table for other in table.tests]
+                for axis, number in tests
+            ]
+        )
+        for table in report.inputs.tables
+    }
     after = _without(report, [column], without).value[column.name][:, 0]
     moved = np.nan_to_num(np.abs(after - before))
     if np.count_nonzero(moved == moved.max()) > 1:
-        return 0, ""
+        return None, ""
     row, how, (place,) = int(moved.argmax()), report.shown[column.name], report.places(column.name)
     was, now = (at(how.of(float(each)), place).text for each in (before, after[row]))
     return tests[row], f"without it {column.name} goes from {was} to {now}, further than without another"
 
 
-def _without(report: Report, columns: Collection[Column], without: Any) -> Values:
-    """Columns, and what they rest on, without the measured cells of some tests (..., tests)."""
+def _without(report: Report, columns: Collection[Column], without: Mapping[str, Any]) -> Values:
+    """Columns, and what they rest on, without the measured cells of some tests (..., tests), by table."""
+    inputs = report.inputs
     needed = {own.name for column in columns for own in (*report.sheet.ancestors(column), column)}
     sheet = Sheet(tuple(own for own in report.sheet.columns if own.name in needed))
     data: Mapping[str, Any] = {
-        one.name: np.where(without, np.nan, own) if one.name in report.inputs.measured else own
+        one.name: own
+        if one.name not in inputs.measured
+        else np.where(without[inputs.of(one.name).name], np.nan, own)
         for one in sheet.columns
         if isinstance(one.rule, Given)
         for own in [report.values.value[one.name]]
     }
-    labels = {axis.name: report.inputs.tests for axis in sheet.axes if axis.is_given}
+    labels = {axis.name: inputs.on(axis.name).tests for axis in sheet.axes if axis.is_given}
     return evaluate(sheet, labels, data)
 
 
@@ -115,7 +129,7 @@ def outliers(report: Report, squares: SquareSum) -> tuple[Outlier, ...]:
     squares : SquareSum
         Of the fit; with a column of deviations.
     """
-    column, total, of = report.sheet[squares.deviation], report.sheet[squares.name], report.inputs
+    column, total, of = report.sheet[squares.deviation], report.sheet[squares.name], report.inputs.only
     without, values, found = np.zeros(len(of.tests), dtype=bool), report.values, list[Outlier]()
     while True:
         deviations = np.abs(values.value[column.name])
@@ -128,7 +142,7 @@ def outliers(report: Report, squares: SquareSum) -> tuple[Outlier, ...]:
         if chance >= SIGNIFICANT:
             return tuple(found)
         without[row] = True
-        values = _without(report, [column, total], without)
+        values = _without(report, [column, total], {of.name: without})
         chi2 = values.scalar(total.name)
         if not np.isfinite(chi2):
             return tuple(found)

@@ -184,7 +184,7 @@ def _numbers(sheet: Sheet, inputs: Inputs) -> Numbers:
 def _known(inputs: Inputs) -> tuple[Change, ...]:
     """The misprints of the input that the report states."""
     return tuple(
-        Change("misprint", name, (inputs.tests[row],), INPUT, printed.text, again.text)
+        Change("misprint", name, (inputs.of(name).tests[row],), INPUT, printed.text, again.text)
         for (name, row), again in inputs.errata.items()
         if (printed := inputs.measured[name][row]) is not None
     )

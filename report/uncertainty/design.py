@@ -72,7 +72,7 @@ class Planner:
     def _known(self) -> dict[str, Array]:
         """What planned rows are made of: the numbers of the sheet, and those fitted to its rows."""
         fitted = Sheet(self.design.fitted)
-        tests = {axis.name: self.inputs.tests for axis in fitted.axes}
+        tests = {axis.name: self.inputs.only.tests for axis in fitted.axes}
         also = evaluate(fitted, tests, {name: self.values.value[name] for name in fitted.bounds})
         found = {}
         for name in Sheet(self.design.planned).bounds.keys() - {self.design.chosen}:
@@ -228,7 +228,7 @@ class Planner:
             size = f"{own!r}".replace("e+", "e")  # a plus adds what follows it
             said = {of: read_statement(f"u = {size}", parse_unit(self.values.sheet[of].unit))}
             same = {name: [float(each.value) for each in inputs.numbers(name)] for name in inputs.measured}
-            return self.u(planned(inputs, same, range(len(inputs.tests)), said))
+            return self.u(planned(inputs, same, range(len(inputs.only.tests)), said))
 
         others = u(0.0)
         if not others <= wanted:

@@ -221,9 +221,9 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     numbered = [label for label in labels if index_text(label) == index]
     wanted = numbered or [label for label in labels if words.get(label) == index]
     if not wanted:
-        for each in report.inputs.left_out:
-            if str(each.test) in index.split("-"):
-                said = f"{report.workbook.row} {each.test}"
+        for table, each in report.inputs.left_out:
+            if table in report.inputs.beneath(column.axis) and str(each.test) in index.split("-"):
+                said = f"{table.row} {each.test}"
                 raise UsageError(diagnose("LS627", each.at, text=address, row=said, reason=each.reason))
         known = listing([index_text(label) for label in labels])
         if words:

@@ -116,9 +116,10 @@ def _plan(study: Study, options: argparse.Namespace) -> Planned:
     chosen = planner.design.chosen
     u = {each: spread.u(each) for each in (chosen, *(n for n in planned.measured if n != chosen))}
     needed = _needed(planner, report, planned, options)
-    found = shares(budget, planned)
+    columns, tests = shares(budget, planned)
+    of_tests = {test: share for (_, test), share in tests.items()}
     curve = planner.design.curve
-    return Planned(made, report, curve, budget, u, *found, best, needed)
+    return Planned(made, report, curve, budget, u, columns, of_tests, best, needed)
 
 
 def _planner(
@@ -137,7 +138,7 @@ def _planner(
     if inputs.workbook.design is None:
         raise UsageError(diagnose("LS618", text=inputs.workbook.name))
     if gaps := [name for name, column in inputs.measured.items() if None in column]:
-        test = inputs.tests[inputs.measured[gaps[0]].index(None)]
+        test = inputs.only.tests[inputs.measured[gaps[0]].index(None)]
         raise wrong(f"test {test} has no {gaps[0]}", "say in a column 'left out' why it takes no part")
     design = inputs.workbook.design(report.sheet)
     address = options.cell or inputs.workbook.headline[0]

@@ -26,7 +26,7 @@ def _header(plan: Planned) -> list[str]:
 
 def _rows(plan: Planned) -> Iterator[list[str]]:
     """The planned tests."""
-    for row, test in enumerate(plan.report.inputs.tests):
+    for row, test in enumerate(plan.report.inputs.only.tests):
         found = [str(test)]
         for name, u in plan.u.items():
             value = float(plan.report.values.value[name][row])
@@ -122,7 +122,7 @@ def _as_json(plan: Planned) -> str:
             },
             "share": number(plan.of_tests[test]),
         }
-        for row, test in enumerate(report.inputs.tests)
+        for row, test in enumerate(report.inputs.only.tests)
     ]
     told = {
         "schema": 1,

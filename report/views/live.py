@@ -114,7 +114,6 @@ def data(report: Report, document: Material) -> str:
         "columns": {column.name: _least(_column(report, document, column)) for column in sheet.columns},
         **given(report),
         **uncertain(report),
-        "rows": next(([axis.name, axis.row] for axis in sheet.axes if axis.is_given), ["rows", "row"]),
         "headline": [
             (name, index_text(label))
             for name in report.workbook.headline

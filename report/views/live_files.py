@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from ..quantity import Printed, behind
 from ..result.result import Report
-from ..sheet import GroupAxis, MemberAxis
+from ..sheet import Axis, GroupAxis, MemberAxis
 
 __all__ = ["given"]
 
@@ -19,23 +18,40 @@ __all__ = ["given"]
 def given(report: Report) -> dict[str, Any]:
     """What was given, as it was printed, and all that is needed to save it as the files that it came from."""
     inputs, sheet = report.inputs, report.sheet
-    measured = {name: numbers for name, numbers in inputs.measured.items() if name in sheet}
+    given = [axis for axis in sheet.axes if axis.is_given]
+    own = {"report.toml", *(inputs.on(axis.name).file for axis in given)}
     return {
-        "tests": _tests(report, measured),
+        "tables": {axis.name: _table_of(report, axis) for axis in given},
         "parameters": {name: number.text for name, number in inputs.parameters.items() if name in sheet},
-        "heads": inputs.heads or {"test": inputs.workbook.row},
-        "texts": _texts(report, measured),
-        "naming": [*inputs.naming],
-        **({"groups": own, "words": _words(report)} if (own := _groups(report)) else {}),
+        **({"groups": groups, "words": _words(report)} if (groups := _groups(report)) else {}),
         "toml": list(_toml(report)),
-        **_files(report),
+        # What goes with them as it is.
+        "files": {
+            _saved(name): data.decode("utf-8", "replace")
+            for name, data in inputs.files.items()
+            if name not in own
+        },
+    }
+
+
+def _table_of(report: Report, axis: Axis) -> dict[str, Any]:
+    """A table of rows, what it is called when it is saved, and what a row is called."""
+    table = report.inputs.on(axis.name)
+    return {
+        "rows": _rows(report, axis),
+        "row": axis.row,
+        "least": table.table.least,
+        "heads": table.heads or {"test": axis.row},
+        "texts": _texts(report, axis),
+        "naming": [*table.naming],
+        "file": _saved(table.file),
     }
 
 
 def _groups(report: Report) -> dict[str, dict[int, int]]:
     """For each axis of rows in groups, the number of every test's group."""
     axes = (axis for axis in report.sheet.axes if isinstance(axis, MemberAxis))
-    return {axis.name: report.inputs.groups(axis.by) for axis in axes}
+    return {axis.name: report.inputs.on(axis.of.name).groups(axis.by) for axis in axes}
 
 
 def _words(report: Report) -> dict[str, dict[int, str]]:
@@ -44,9 +60,15 @@ def _words(report: Report) -> dict[str, dict[int, str]]:
     return {name: {n: word for (n,), word in report.values.words[name].items()} for name in names}
 
 
-def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> list[dict[str, Any]]:
-    """The rows of the table of the tests, in its order, with those that are left out."""
-    inputs = report.inputs
+def _measured(report: Report, axis: Axis) -> dict[str, tuple[Printed | None, ...]]:
+    """What is measured in the rows of a table, of which the sheet knows."""
+    every = report.inputs.on(axis.name).measured.items()
+    return {name: numbers for name, numbers in every if name in report.sheet}
+
+
+def _rows(report: Report, axis: Axis) -> list[dict[str, Any]]:
+    """The rows of a table, in its order, with those that are left out."""
+    table, measured = report.inputs.on(axis.name), _measured(report, axis)
     rows = [
         {
             "label": test,
@@ -54,9 +76,9 @@ def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -
             "reason": "",
             "cells": {name: _text(numbers[row]) for name, numbers in measured.items()},
         }
-        for row, test in enumerate(inputs.tests)
+        for row, test in enumerate(table.tests)
     ]
-    for each in inputs.left_out:
+    for each in table.left_out:
         cells = {name: each.texts[name] for name in measured}
         rows.insert(each.place, {"label": each.test, "used": False, "reason": each.reason, "cells": cells})
     return rows
@@ -64,25 +86,6 @@ def _tests(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -
 
 def _text(number: Printed | None) -> str:
     return number.text if number else ""
-
-
-def _files(report: Report) -> dict[str, Any]:
-    """What the table of the tests is called when it is saved, and the files that go with it as they are."""
-    measurements = _path(report, "measurements")
-    others = {
-        name: data for name, data in report.inputs.files.items() if name not in ("report.toml", measurements)
-    }
-    return {
-        # Without a table report.toml is written in its place.
-        "file": _saved(measurements) if report.inputs.workbook.measured else "report.toml",
-        "files": {_saved(name): data.decode("utf-8", "replace") for name, data in others.items()},
-    }
-
-
-def _path(report: Report, table: str) -> str:
-    """The file that a table of report.toml names."""
-    said = tomllib.loads(_raw(report)).get(table, {})
-    return Path(said["file"].strip()).as_posix() if "file" in said else "measurements.csv"
 
 
 def _raw(report: Report) -> str:
@@ -94,19 +97,19 @@ def _saved(name: str) -> str:
     return name.replace("/", "-")
 
 
-def _texts(report: Report, measured: Mapping[str, tuple[Printed | None, ...]]) -> dict[int, dict[str, str]]:
-    """What stands in the rows of the tests, by test and column, where the cells of the page do not say it."""
-    inputs = report.inputs
+def _texts(report: Report, axis: Axis) -> dict[int, dict[str, str]]:
+    """What stands in the rows of a table, by test and column, where the cells of the page do not say it."""
+    table, measured = report.inputs.on(axis.name), _measured(report, axis)
     cells = {
-        test: {name: _text(measured[name][row]) for name in measured} for row, test in enumerate(inputs.tests)
+        test: {name: _text(measured[name][row]) for name in measured} for row, test in enumerate(table.tests)
     }
     found = {
         test: {name: text for name, text in texts.items() if cells[test].get(name) != text}
-        for test, texts in inputs.texts.items()
+        for test, texts in table.texts.items()
     }
     found |= {
         each.test: {name: text for name, text in each.texts.items() if name not in measured}
-        for each in inputs.left_out
+        for each in table.left_out
     }
     return {test: texts for test, texts in found.items() if texts}
 
@@ -166,12 +169,13 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
             # In parentheses it counts units of the last digit, which an edit may move.
             if concise := re.match(r"\([0-9]+\)(?P<behind>[^\"'\n]*)", text[end:]):
                 pieces.append((end, end + concise.end(), concise["behind"] + _stated(number)))
-    for name in ("measurements", "published"):
+    own = (r"[ \t]*\.[ \t]*".join(each.table.place) for each in report.inputs.tables)
+    for name in (*own, "published"):
         table = _table(text, name)
         named = re.search(r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", table, re.MULTILINE)
         if named is not None and "/" in named["name"]:
             start = text.index(table) + named.start("name")
-            saved = _saved(_path(report, name))
+            saved = _saved(Path(named["name"].strip()).as_posix())
             pieces.append((start, start + len(named["name"]), {"file": saved}))
     pieces += _taken(report, text)
     done = 0
@@ -185,7 +189,9 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
 def _taken(report: Report, text: str) -> Iterator[tuple[int, int, str | dict[str, str]]]:
     """The places where a mark makes a remark of what is said of a taken number, and the files named there."""
     for name in report.inputs.taken:
-        table = "parameters" if name in report.inputs.parameters else r"measurements[ \t]*\.[ \t]*taken"
+        table = "parameters"
+        if name in report.inputs.measured:
+            table = r"[ \t]*\.[ \t]*".join((*report.inputs.of(name).table.place, "taken"))
         own, key = _table(text, rf"{table}[ \t]*\.[ \t]*{name}"), rf"""[ \t]*(["']?){name}\1[ \t]*[=.]"""
         whole = own or _table(text, table)
         for line in re.finditer(r"^[^\n]*\S[^\n]*$", whole, re.MULTILINE):

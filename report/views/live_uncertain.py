@@ -83,7 +83,7 @@ def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
 def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
     """What is stated of the numbers of a column in the tests that are left out."""
     printed = report.inputs.numbers(name)
-    for each in report.inputs.left_out:
+    for _, each in report.inputs.left_out:
         if name in each.stated:
             stated = each.stated[name]
             none = each.texts.get(f"u({name})", "")

@@ -194,7 +194,7 @@ def _data(report: Report, curve: Curve) -> Iterator[Group]:
 
 def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
     """Over which rows a fit is, which are left out and why, and where it begins."""
-    values, inputs, row = report.values, report.inputs, report.workbook.row
+    values = report.values
     size, used = values.layouts[curve.axis].size, values.rows_summed(curve.name, curve.axis)
     number = f"{used} {curve.axis}" if used == size else f"{used} of {size} {curve.axis}"
     beside = [name for name in curve.fitted if name != column.name]
@@ -202,7 +202,7 @@ def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
     scatter = f"{curve.scatter} = {report.text(values.cell(curve.scatter))}"
     yield _line("fitted", f"to {curve.observed} of {number}{found}, by least squares; {scatter}")
     if isinstance(column.rule, Iterated):
-        start, said = column.rule.start, report.workbook.sheet(inputs.given)[column.name].rule
+        start, said = column.rule.start, report.workbook.sheet(report.inputs.given)[column.name].rule
         yield _line("begun", f"at {_place(report, column, start)}")
         if isinstance(said, Iterated) and said.start != start:
             stated = _place(report, column, said.start)
@@ -214,9 +214,10 @@ def _fitted(report: Report, column: Column, curve: Curve) -> Iterator[str]:
         if used < size
         else {}
     )
-    gone = {each.test: each.reason for each in inputs.left_out}
-    for test, reason in (*lost.items(), *gone.items()):
-        yield _line("left out", f"{row} {inputs.called(test)}: {reason}")
+    for table in report.inputs.beneath(report.sheet[curve.residual].axis):
+        gone = {each.test: each.reason for each in table.left_out}
+        for test, reason in (*lost.items(), *gone.items()):
+            yield _line("left out", f"{table.row} {table.called(test)}: {reason}")
 
 
 def _place(report: Report, column: Column, start: Expr) -> str:

@@ -109,17 +109,18 @@ class GivenCells:
 
     def write_left_out(self, sheet: Any, style: Style, blocks: Sequence[CellBlock], note: Place) -> int:
         """Write those that are left out below, as texts that no formula counts; how many rows that takes."""
-        if not (left_out := self.report.inputs.left_out):
+        table = self.report.inputs.on(self.grid.axes[note.worksheet].name)
+        if not (left_out := table.left_out):
             return 0
         first = note.row + note.rows + 1
         style.text(sheet, first, 0, "left out, and in no formula:", "subtitle")
         for row, each in enumerate(left_out, start=first + 1):
             style.text(sheet, row, 0, str(each.test), "index")
             for block in (block for block in blocks if block.name in each.texts):
-                text, unit = each.texts[block.name], self.report.inputs.header_units[block.name]
+                text, unit = each.texts[block.name], table.header_units[block.name]
                 style.text(sheet, row, block.place.column, text + said(unit), "aside")
             words = self.grid.words.get(note.worksheet, ())
-            for place, name in zip(words, self.report.inputs.remarks, strict=False):
+            for place, name in zip(words, table.remarks, strict=False):
                 style.text(sheet, row, place.column, each.texts[name], "aside")
             style.text(sheet, row, note.column, each.reason, "aside")
         return 2 + len(left_out)
@@ -143,10 +144,13 @@ class GivenCells:
         same += [
             each.same(each.own.cell(row, here), each.group.cell(each.rows[row], here)) for each in grouped
         ]
-        inputs = self.report.inputs
-        for place, name in zip(words, inputs.remarks, strict=False):
-            if name in inputs.naming and place not in [each.own for each in grouped]:
-                word = inputs.texts[inputs.tests[row]][name][:_LONGEST]
+        axis = self.grid.axes[here]
+        if not axis.is_given:
+            return same
+        table = self.report.inputs.on(axis.name)
+        for place, name in zip(words, table.remarks, strict=False):
+            if name in table.naming and place not in [each.own for each in grouped]:
+                word = table.texts[table.tests[row]][name][:_LONGEST]
                 same.append(f"EXACT(LEFT({place.cell(row, here)},{_LONGEST}),{_text(word)})")
         return same
 

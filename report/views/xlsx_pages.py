@@ -94,8 +94,12 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
     counts = sorted({axis.repeats for axis in grid.axes.values() if axis.repeats} & set(report.shown))
     odd = [f"{check.word.capitalize()}: {check.message}." for check in report.oddities if check.word]
     (example, *_) = *(name for name in report.workbook.headline if name in report.sheet), columns[-1].name
-    rows = next((axis.row for axis in report.sheet.axes if axis.is_given), "row")
-    rows = f"an {rows}" if rows[0].lower() in "aeiou" else f"a {rows}"
+    rows = " or ".join(
+        f"an {axis.row}" if axis.row[0].lower() in "aeiou" else f"a {axis.row}"
+        for axis in report.sheet.axes
+        if axis.is_given
+    )
+    rows = rows or "a row"
     notes = [
         f"Inputs are the yellow cells, on {' and '.join(given)}. Type over them: every other number follows, "
         "in any spreadsheet program that recalculates.",

@@ -87,11 +87,13 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
         below = inputs.write_left_out(sheet, style, given, grid.notes[name])
     words = grid.words.get(name, ())
     if isinstance(axis, GroupAxis):
-        words_in, numbers = report.inputs.words(axis.row), report.values.layouts[axis.name].labels[:, 0]
+        words_in = report.inputs.on(axis.members.of.name).words(axis.row)
+        numbers = report.values.layouts[axis.name].labels[:, 0]
         _write_words(sheet, style, words[0], axis.row, [words_in[number - 1] for number in numbers.tolist()])
-    else:  # rows made of others have none
-        for place, column in zip(words, report.inputs.remarks, strict=False):
-            texts = [report.inputs.texts[test][column] for test in report.inputs.tests]
+    elif words:  # rows made of others have none
+        table = report.inputs.on(axis.name)
+        for place, column in zip(words, table.remarks, strict=False):
+            texts = [table.texts[test][column] for test in table.tests]
             _write_words(sheet, style, place, column, texts)
     for block in blocks:
         if block.place.row == FIRST_ROW:
@@ -106,7 +108,8 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     if isinstance(axis, GroupAxis):
         named = [1]
     else:
-        named = [report.inputs.remarks.index(column) + 1 for column in report.inputs.naming if words]
+        own = report.inputs.on(axis.name) if words else None
+        named = [own.remarks.index(column) + 1 for column in own.naming] if own else []
     indices = len([b for b in blocks if b.kind == "index"])
     sheet.freeze_panes(FIRST_ROW, indices + sum(named))
     last, size = max(b.place.column for b in blocks), max(b.place.rows for b in blocks)

@@ -23,7 +23,7 @@ function writeBar(look) {
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
   for (const id of ["reason", "sure", "draws", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
-  byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${ROW} is left out or removed.`;
+  byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${beneath(look.trace.declared[name].axis)?.row} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
 }
@@ -39,7 +39,7 @@ function fillBar(look, name, row, index) {
   }
   fillSure(look, name, row);
   fillDraws(look);
-  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.file}, ${ROW} ${index}`}`);
+  if (column.given) fillLine("bar-source", `given, ${here.axis === null ? "in report.toml" : `in ${LIVE.tables[here.axis].file}, ${LIVE.tables[here.axis].row} ${index}`}`);
   else fillLine("bar-source", ...sourceLine(column), ...publishedMath(column, name, row));
   if (column.put && trace.isOk(name, row)) fillLine("bar-put", ...putIn(look, name, row));
   const others = (groups) => groups.filter((one) => one.name !== name); // what is iterated names itself

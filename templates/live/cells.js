@@ -6,14 +6,13 @@ class Look {
     this.trace = trace;
     this.state = state;
     this.issued = issued;
-    this.tests = usedTests(state);
     this.known = {};
   }
 
   // The printed texts of a given column, row by row.
   texts(name) {
     const axis = this.trace.declared[name].axis;
-    return axis === null ? [this.state.parameters[name]] : this.tests.map((test) => test.cells[name]);
+    return axis === null ? [this.state.parameters[name]] : usedTests(this.state, axis).map((test) => test.cells[name]);
   }
 
   get sure() {

@@ -210,7 +210,7 @@ function onPaste(event) {
   const block = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t"));
   const commas = block.flat().some((one) => !one.includes(".") && one.includes(",") && NUMBER.test(normalised(one)));
   const read = (one = "") => normalised(one, commas), head = block.length > 1 && isHead(block[0]) && block.shift();
-  const table = page.tables.find((one) => one.element === gridOf(element)), said = (table ? pasteRows : pasteScalars)(element, block, read, head, table);
+  const table = tableOf(element), said = (table ? pasteRows : pasteScalars)(element, block, read, head, table);
   enter(element);
   if (said) note(said);
 }
@@ -222,9 +222,9 @@ function pasteScalars(element, rows, read) {
 
 // A block of texts by the names in its first line, without one from a cell on; by the numbers of rows where it has
 // them, else down, into new tests. What is to be said of it: why all of it is refused, or what of it had no place.
-function pasteRows({ dataset: { cell, index } }, rows, read, head, { inputs }) {
-  const state = copied(page.history.now), { tests } = state, labels = tests.map(({ label }) => String(label)), lost = new Set();
-  const names = head ? head.map((text) => columnAsked(text, inputs)) : inputs.slice(inputs.indexOf(cell)), first = rows.map(([text]) => read(text));
+function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, inputs, row: called }) {
+  const state = copied(page.history.now), tests = state.tables[axis], labels = tests.map(({ label }) => String(label)), lost = new Set();
+  const names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell)), first = rows.map(([text]) => read(text));
   if (!head && rows[0].length > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text))) names.unshift("");
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
   if (why) return `Nothing was pasted: ${why}.`;
@@ -232,12 +232,12 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { inputs }) {
   let rowsLost = 0;
   for (const [down, fields] of rows.entries()) {
     const place = labels.indexOf(at < 0 ? index : read(fields[at])) + (at < 0 ? down : 0);
-    const test = tests[place] ?? (place < 0 || LIVE.groups ? null : newTest(state)); // of no group
+    const test = tests[place] ?? (place < 0 || isGrouped(axis) ? null : newTest(state, axis)); // of no group
     if (!test) rowsLost += 1;
     for (const [n, text] of test ? fields.entries() : []) {
-      const name = names[n], word = LIVE.texts[test.label]?.[name];
+      const name = names[n], word = LIVE.tables[axis].texts[test.label]?.[name];
       if (inputs.includes(name)) test.cells[name] = read(text);
-      else if (word && text && read(word) !== read(text)) return `Nothing was pasted: ${name} of ${ROW} ${test.label} is ${word}, not ${text}.`;
+      else if (word && text && read(word) !== read(text)) return `Nothing was pasted: ${name} of ${called} ${test.label} is ${word}, not ${text}.`;
       else if (!word && text && name !== "") lost.add(n);
     }
   }
@@ -247,11 +247,11 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { inputs }) {
 }
 
 // The column that a name in the first line of a block is of: "" of the numbers of rows; or why it is refused.
-function columnAsked(text, inputs) {
+function columnAsked(text, inputs, { heads, row }) {
   const [, name, unit] = /^(.*?)\s*(?:\[(.*)\])?$/.exec(text.trim()), own = inputs.includes(name) && LIVE.columns[name].unit;
   const plain = (one = "") => one.replace(/[µμ]/, "u").replace(/^[-1]$/, "");
-  const other = own && unit !== undefined && ![own, /\[(.*)\]/.exec(LIVE.heads[name])?.[1]].some((one) => plain(one) === plain(unit));
-  return other ? { why: `${name} is in ${own} here, not in ${unit}` } : [ROW, LIVE.heads.test].includes(name) ? "" : name;
+  const other = own && unit !== undefined && ![own, /\[(.*)\]/.exec(heads[name])?.[1]].some((one) => plain(one) === plain(unit));
+  return other ? { why: `${name} is in ${own} here, not in ${unit}` } : [row, heads.test].includes(name) ? "" : name;
 }
 
 // A first line of different words is the head of a block; what stands for a missing datum is no head.

@@ -71,12 +71,13 @@ function expected(column, index, text) {
 }
 
 // --- states ----------------------------------------------------------------------------------------------
-// A state is { tests: [{ label, used, reason, cells: { v: "2.334" } }], parameters: { beta: "1.5" } } and is never
-// changed: an edit makes a new one. The reason is why a test is not used.
+// A state is { tables: { tests: [{ label, used, reason, cells: { v: "2.334" } }] }, parameters: { beta: "1.5" } } and is
+// never changed: an edit makes a new one. A table is known by its index set; the reason is why a test is not used.
 
 const copied = (state) => structuredClone(state);
 const sameState = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-const usedTests = (state) => state.tests.filter((test) => test.used);
+const usedTests = (state, axis) => state.tables[axis].filter((test) => test.used);
+const testAt = (state, axis, label) => state.tables[axis].find((one) => String(one.label) === String(label));
 
 class History {
   constructor(issued) {
@@ -110,16 +111,19 @@ class History {
 
 // How many inputs differ from the report as issued.
 function differences(state, issued) {
-  const before = new Map(issued.tests.map((test) => [test.label, test]));
-  let count = before.size;
-  for (const test of state.tests) {
-    const old = before.get(test.label);
-    if (!old) {
-      count += 1;
-      continue;
+  let count = 0;
+  for (const axis of Object.keys(issued.tables)) {
+    const before = new Map(issued.tables[axis].map((test) => [test.label, test]));
+    count += before.size;
+    for (const test of state.tables[axis]) {
+      const old = before.get(test.label);
+      if (!old) {
+        count += 1;
+        continue;
+      }
+      count += (test.used !== old.used || test.reason !== old.reason) - 1;
+      for (const name of Object.keys(test.cells)) count += test.cells[name] !== old.cells[name];
     }
-    count += (test.used !== old.used || test.reason !== old.reason) - 1;
-    for (const name of Object.keys(test.cells)) count += test.cells[name] !== old.cells[name];
   }
   for (const name of Object.keys(state.parameters)) count += state.parameters[name] !== issued.parameters[name];
   return count;
@@ -130,14 +134,14 @@ function differences(state, issued) {
 // Reads the inputs and computes every column: what evaluateSheet returns, with what it was given and why inputs were
 // refused. Where rows stand in groups, the number of each test's is told.
 function computeSheet(program, columns, state, groups) {
-  const tests = usedTests(state), labels = {}, data = {}, refused = {};
-  for (const { name, kind } of program.axes) {
-    if (kind === "given") labels[name] = tests.map((test) => test.label);
-    if (kind === "members") labels[name] = tests.map((test) => groups[name][test.label]);
+  const labels = {}, data = {}, refused = {};
+  for (const { name, kind, of } of program.axes) {
+    if (kind === "given") labels[name] = usedTests(state, name).map((test) => test.label);
+    if (kind === "members") labels[name] = usedTests(state, of).map((test) => groups[name][test.label]);
   }
   for (const { name, axis, kind } of program.columns) {
     if (kind !== "given" || program.constants[name]) continue;
-    const { of } = columns[name];
+    const { of } = columns[name], tests = axis === null ? [] : usedTests(state, axis);
     if (of) {
       data[name] = tests.map(({ label, cells }) => {
         const input = [columns[of], label, cells[of]];

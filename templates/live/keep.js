@@ -7,25 +7,27 @@ const MOST_MORE = 300; // tests that a link may add: the work grows with the squ
 const lasting = { safe: null }; // the state that was saved or copied
 
 // What foreign text holds as states of this report, one after the other; null if it is none.
-function readStates(read, most = Infinity) {
+function readStates(read, more = Infinity) {
   try {
     const found = JSON.parse(read());
-    return found.length ? found.map((one) => stateIn(one, most)) : null;
+    return found.length ? found.map((one) => stateIn(one, more)) : null;
   } catch {
     return null;
   }
 }
 
-function stateIn(found, most) {
-  if (found.tests.length > most) throw new RangeError("too many tests");
-  const names = Object.keys(LIVE.tests[0].cells), parameters = Object.keys(LIVE.parameters);
-  const texts = (from, wanted) => Object.fromEntries(wanted.map((name) => [name, plainText(from[name])]));
-  const tests = found.tests.map(({ label, used, reason, cells }) => {
-    if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");
-    return { label, used: used === true, reason: plainText(reason), cells: texts(cells, names) };
-  });
-  const state = { tests, parameters: texts(found.parameters, parameters) };
-  if (!enough(state) || new Set(tests.map(({ label }) => label)).size < tests.length) throw new RangeError("no such tests");
+function stateIn(found, more) {
+  const texts = (from, wanted) => Object.fromEntries(Object.keys(wanted).map((name) => [name, plainText(from[name])]));
+  const state = { tables: {}, parameters: texts(found.parameters, LIVE.parameters) };
+  for (const [axis, { rows }] of Object.entries(LIVE.tables)) {
+    const all = found.tables[axis];
+    if (all.length > rows.length + more) throw new RangeError("too many tests");
+    state.tables[axis] = all.map(({ label, used, reason, cells }) => {
+      if (!Number.isSafeInteger(label) || label < 1 || label >= 1e9) throw new RangeError("no number of a test");
+      return { label, used: used === true, reason: plainText(reason), cells: texts(cells, rows[0].cells) };
+    });
+    if (!enough(state, axis) || new Set(all.map(({ label }) => label)).size < all.length) throw new RangeError("no such tests");
+  }
   return state;
 }
 
@@ -111,7 +113,7 @@ function ofLink(text) {
   const states = readStates(() => {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
     return `[${new TextDecoder("utf-8", { fatal: true }).decode(bytes)}]`;
-  }, LIVE.tests.length + MOST_MORE);
+  }, MOST_MORE);
   return states?.at(-1) ?? null;
 }
 

@@ -31,7 +31,7 @@ function moved(really) {
 function setCell(name, index, text) {
   change((state) => {
     if (index === "") state.parameters[name] = text;
-    else state.tests.find((test) => String(test.label) === index).cells[name] = text;
+    else testAt(state, axisOf(name), index).cells[name] = text;
   });
   // At once, for the bar goes on to the next cell.
   const { trace } = page.look, row = trace.row(name, index);
@@ -39,48 +39,49 @@ function setCell(name, index, text) {
   if (why) note(`${trace.address(name, row)}: ${why}.`);
 }
 
-const enough = (state) => usedTests(state).length >= 2;
+const enough = (state, axis) => usedTests(state, axis).length >= LIVE.tables[axis].least;
 
 // Whether a report can do without a test; where it cannot, that is said.
-function mayGo(state, label) {
-  if (!enough(state)) note(`Two ${ROWS} are the least that a report needs: ${ROW} ${label} stays.`);
-  return enough(state);
+function mayGo(state, { axis, row }, label) {
+  const may = enough(state, axis);
+  if (!may) note(`${LIVE.tables[axis].least > 1 ? `Two ${axis} are` : `One ${row} is`} the least that a report needs: ${row} ${label} stays.`);
+  return may;
 }
 
-function useTest(label, used) {
+function useTest(table, label, used) {
   change((state) => {
-    const test = state.tests.find((one) => one.label === label), issued = page.history.issued.tests.find((one) => one.label === label);
+    const test = testAt(state, table.axis, label), issued = testAt(page.history.issued, table.axis, label);
     test.used = used;
     test.reason = used ? "" : issued?.reason ?? "";
-    return mayGo(state, label);
+    return mayGo(state, table, label);
   });
-  for (const box of all("[data-use]")) box.checked = page.history.now.tests.find((test) => String(test.label) === box.dataset.use).used;
+  for (const box of all("[data-use]", table.element)) box.checked = testAt(page.history.now, table.axis, box.dataset.use).used;
 }
 
-function giveReason(label, reason) {
+function giveReason({ axis }, label, reason) {
   change((state) => {
-    state.tests.find((test) => test.label === label).reason = reason.trim();
+    testAt(state, axis, label).reason = reason.trim();
   });
 }
 
-function removeTest(label) {
-  change((state) => {
-    state.tests = state.tests.filter((test) => test.label !== label);
-    return mayGo(state, label);
+function removeTest(table, label) {
+  change(({ tables }) => {
+    tables[table.axis] = tables[table.axis].filter((test) => String(test.label) !== label);
+    return mayGo({ tables }, table, label);
   });
 }
 
 // Its number is none that another had before: what was said of that one is not said of it.
-function newTest(state) {
-  const label = Math.max(0, ...[...LIVE.tests, ...state.tests].map((test) => test.label)) + 1;
-  const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(LIVE.tests[0].cells).map((name) => [name, ""])) };
-  state.tests.push(test);
+function newTest({ tables }, axis) {
+  const { rows } = LIVE.tables[axis], label = Math.max(0, ...[...rows, ...tables[axis]].map((test) => test.label)) + 1;
+  const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(rows[0].cells).map((name) => [name, ""])) };
+  tables[axis].push(test);
   return test;
 }
 
-function addTest() {
-  change((state) => newTest(state));
-  const table = page.tables.find((one) => one.editable);
+function addTest(axis) {
+  change((state) => newTest(state, axis));
+  const table = page.tables.find((one) => one.editable && one.axis === axis);
   const input = table.body.rows[table.body.rows.length - 1].querySelector("input[data-cell]");
   enter(input);
 }
@@ -150,7 +151,7 @@ function refocus(element) {
 function writeToolbar(edited) {
   const { history } = page, count = differences(history.now, history.issued);
   const differ = count === 1 ? "1 input differs" : `${count} inputs differ`;
-  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : `the order of the ${ROWS} differs`} from the report as issued.${lost(page.look)}` : "";
+  byId("live-banner").textContent = edited ? `Edited: ${count ? differ : `the order of the ${Object.keys(LIVE.tables).join(" or ")} differs`} from the report as issued.${lost(page.look)}` : "";
   byId("live-reset").disabled = !edited;
   byId("live-undo").disabled = history.place === 0;
   byId("live-redo").disabled = history.place === history.states.length - 1;
@@ -171,9 +172,9 @@ function announce(before, after) {
 
 function begin() {
   unstored();
-  const state = { tests: LIVE.tests, parameters: LIVE.parameters };
-  page.history = new History(state);
-  page.look = lookAt(state, null);
+  const tables = Object.fromEntries(Object.entries(LIVE.tables).map(([axis, { rows }]) => [axis, rows]));
+  page.history = new History({ tables, parameters: LIVE.parameters });
+  page.look = lookAt(page.history.now, null);
   page.issued = page.look;
   prepareInputs();
   // Everything that an edit may change is kept as it is now.
@@ -226,7 +227,7 @@ function prepareInputs() {
   }
   const tables = all("main table:not(.list)").filter((table) => table.querySelector("tbody [data-cell]"));
   page.tables = tables.map((table) => new Table(table));
-  page.tables.find(({ inputs }) => inputs.length)?.makeEditable();
+  for (const name of Object.keys(LIVE.tables)) page.tables.find(({ axis, inputs }) => axis === name && inputs.length)?.makeEditable();
   page.loose = looseCells();
   for (const cell of page.loose) {
     if (cell.tagName === "SPAN") furnished(cell, { tabindex: "0", role: "button", "aria-controls": "formula-bar" }, []);
@@ -248,8 +249,9 @@ function listen() {
   main.addEventListener("focusout", (event) => editing?.element === event.target && commit());
   main.addEventListener("mousemove", onDrag);
   main.addEventListener("change", ({ target }) => {
-    if (target.dataset.use) useTest(Number(target.dataset.use), target.checked);
-    if (target.dataset.reason) giveReason(Number(target.dataset.reason), target.value);
+    const { use, reason } = target.dataset, table = tableOf(target);
+    if (use) useTest(table, use, target.checked);
+    if (reason) giveReason(table, reason, target.value);
   });
   // A button of the bar leaves the focus where it is: what is being typed is entered by the click, not before
   // it, or the bar would grow and take the button from under the pointer.
@@ -265,10 +267,11 @@ function listen() {
 
 function pressed(button) {
   commit();
-  const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-link": shareLink, "live-add": addTest };
+  const actions = { "live-undo": undo, "live-redo": redo, "live-reset": reset, "live-save": save, "live-link": shareLink };
   if (button.dataset.goto) goTo(button.dataset.goto);
   else if (button.matches("[data-copy]")) copyTable(button.parentElement.querySelector("table"));
-  else if (button.dataset.remove) removeTest(Number(button.dataset.remove));
+  else if (button.dataset.remove) removeTest(tableOf(button), button.dataset.remove);
+  else if (button.dataset.add) addTest(button.dataset.add);
   else if (button.id === "bar-toggle") toggleBar(!bar.open);
   else actions[button.id]?.();
 }

@@ -58,7 +58,6 @@ function setText(element, text) {
 
 const slug = (label) => label.replace(/[^A-Za-z0-9_.]+/g, "-").replace(/^-+|-+$/g, "") || "x";
 const cellId = (kind, name, index) => slug(index ? `${kind}-${name}-${index}` : `${kind}-${name}`);
-const [ROWS, ROW] = LIVE.rows; // what the user gives: tests, a test
 const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
 
 const PARTS = { symbol: "i", meaning: "b", unit: "u", equation: "s" };

@@ -59,7 +59,7 @@ function cellText(cell) {
   const input = cell.querySelector("input[data-cell]");
   if (input) return input.value;
   if (cell.className === "tools") {
-    const { label } = cell.parentElement.dataset, test = page.history.now.tests.find((one) => String(one.label) === label);
+    const test = testAt(page.history.now, tableOf(cell).axis, cell.parentElement.dataset.label);
     return test ? leftOut(test) : "left out";
   }
   // A head says what the column is called in a file; a list of different quantities has none.

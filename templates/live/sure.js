@@ -18,7 +18,7 @@ function* errorsIn(look) {
       const rows = group.map((label) => every.indexOf(String(label))).filter((row) => row >= 0);
       const found = rows.map((row) => errorsOf({ ...column, errors: [error] }, "", texts[row])[0]);
       const moves = rows.flatMap((row, n) => (found[n] ? [[of, row, found[n].u]] : []));
-      const named = groups ? ` (${group.length > 1 ? ROWS : ROW} ${group.join(", ")})` : "";
+      const { axis } = look.trace.declared[of], named = groups ? ` (${group.length > 1 ? axis : LIVE.tables[axis].row} ${group.join(", ")})` : "";
       if (moves.length) yield { ...error, called: called + named, moves };
     }
   }

@@ -1,7 +1,13 @@
-// Of rows in groups, to which a new one belongs is told by no cell of the page.
-const ADDED_ELSEWHERE = `A further ${ROW} is added in the table of measurements, with the word of its group; then build again.`;
-
 // The tables whose rows come and go with the tests, and the cells that stand elsewhere.
+
+const tableOf = (element) => page.tables.find((one) => one.element.contains(element));
+const axisOf = (name) => page.look.trace.declared[name].axis;
+
+// What the user gives, whose rows those of an index set are made of.
+const beneath = (axis) => axis && (LIVE.tables[axis] ?? beneath(axisNamed(axis).of));
+
+// Of rows in groups, to which a new one belongs is told by no cell of the page.
+const isGrouped = (axis) => PROGRAM.axes.some(({ kind, of }) => kind === "members" && of === axis);
 
 // A table of one index set: a row for each of its rows, and for the tests also for those that are left out.
 class Table {
@@ -11,6 +17,7 @@ class Table {
     const cells = all("[data-cell]", this.body.rows[0]);
     this.columns = cells.map((cell) => ({ name: cell.dataset.cell, identified: cell.id !== "" }));
     this.axis = PROGRAM.columns.find((column) => column.name === this.columns[0].name).axis;
+    this.row = LIVE.tables[this.axis]?.row;
     this.inputs = this.columns.filter(({ name }) => LIVE.columns[name].given).map(({ name }) => name);
     this.words = all("thead th[class]", element);
     this.first = cells[0].dataset.index;
@@ -24,34 +31,34 @@ class Table {
     this.editable = true;
     this.element.tHead.rows[0].append(make("td", { class: "tools" }));
     for (const row of this.body.rows) this.addTools(row);
-    const add = LIVE.groups
-      ? make("span", { class: "says" }, ADDED_ELSEWHERE)
-      : make("button", { type: "button", id: "live-add" }, `Add ${/^[aeiou]/i.test(ROW) ? "an" : "a"} ${ROW}`);
+    const { axis, row: called } = this, add = isGrouped(axis)
+      ? make("span", { class: "says" }, `A further ${called} is added in the table of measurements, with the word of its group; then build again.`)
+      : make("button", { type: "button", id: byId("live-add") ? null : "live-add", "data-add": axis }, `Add ${/^[aeiou]/i.test(called) ? "an" : "a"} ${called}`);
     this.element.closest(".scroll").after(make("p", { class: "add" }, add));
   }
 
   addTools(row) {
-    const label = row.dataset.label, head = row.cells[0];
-    const { used, reason } = page.history.now.tests.find((test) => String(test.label) === label);
+    const label = row.dataset.label, head = row.cells[0], called = `${this.row} ${label}`;
+    const { used, reason } = testAt(page.history.now, this.axis, label);
     const use = make("input", {
-      type: "checkbox", checked: used, "data-use": label, tabindex: "-1", "aria-label": `use ${ROW} ${label}`,
+      type: "checkbox", checked: used, "data-use": label, tabindex: "-1", "aria-label": `use ${called}`,
     });
     head.replaceChildren(make("label", {}, use, ` ${label}`));
     const remove = make("button", {
-      type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove ${ROW} ${label}`, title: `remove ${ROW} ${label}`,
+      type: "button", "data-remove": label, tabindex: "-1", "aria-label": `remove ${called}`, title: `remove ${called}`,
     }, "×");
     const why = make("input", {
       type: "text", "data-reason": label, value: reason, maxlength: "500", autocomplete: "off",
-      placeholder: "reason", "aria-label": `why ${ROW} ${label} is left out`,
+      placeholder: "reason", "aria-label": `why ${called} is left out`,
     });
     row.append(make("td", { class: "tools" }, why, remove));
   }
 
   // What stands beside a row in a column of words: beside a group, what stands beside its tests.
   word(index, name) {
-    const { kind, of } = PROGRAM.axes.find((axis) => axis.name === this.axis);
+    const { kind, of } = axisNamed(this.axis);
     const its = kind === "groups" && Object.entries(LIVE.groups[of]).find(([, number]) => String(number) === index);
-    return wordOf(its ? its[0] : index, name);
+    return wordOf(its ? axisNamed(of).of : this.axis, its ? its[0] : index, name);
   }
 
   newRow(index) {
@@ -73,7 +80,7 @@ class Table {
 
   // The rows that the table has now, by their index.
   wanted(look) {
-    if (this.editable) return look.state.tests.map((test) => String(test.label));
+    if (this.editable) return look.state.tables[this.axis].map((test) => String(test.label));
     return look.trace.sheet.layouts[this.axis].labels.slice(0, mostOf(this.element)).map((label) => label.join("-"));
   }
 
@@ -91,7 +98,7 @@ class Table {
   }
 
   writeRow(row, look, index, last) {
-    const test = this.editable ? look.state.tests.find((one) => String(one.label) === index) : null;
+    const test = this.editable ? testAt(look.state, this.axis, index) : null;
     if (test) {
       row.classList.toggle("excluded", !test.used);
       const use = row.querySelector("[data-use]");
@@ -137,7 +144,7 @@ const INPUT_ATTRIBUTES = {
 function writeCounts(look) {
   for (const element of all("[data-count]")) {
     const { count, counted } = element.dataset;
-    const rows = count === "left out" ? page.history.now.tests.filter(({ used }) => !used).length : look.trace.sheet.layouts[count].size;
+    const rows = count === "left out" ? Object.values(page.history.now.tables).flat().filter(({ used }) => !used).length : look.trace.sheet.layouts[count].size;
     setText(element, String(look.trace.sheet.counted[counted]?.[count] || rows));
   }
   for (const element of all("[data-inside]")) {

@@ -141,7 +141,7 @@ def deliver(folder: Path = PAPER, drawn: bool = True) -> Delivered:
     report = Study(folder).computed
     charts = stages.for_a_grid(report) if drawn else None
     units = {name: shown.unit for name, shown in report.shown.items()}
-    first, words = report.workbook.headline, report.inputs.remarks
+    first, words = report.workbook.headline, stages.words_beside(report)
     grid = excel_grid.grid(report.sheet, report.marks.values, units, first, charts, words)
     return Delivered(report, grid, xlsx.render(report, grid))
 

@@ -7,7 +7,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -213,8 +213,8 @@ class Live:
     def click(self, identifier: str) -> None:
         self.page.locator(f"#{identifier}").click()
 
-    def save(self, folder: Path, *others: str, file: str = "measurements.csv") -> Path:
-        """Save all inputs as the page offers it; gives the folder of the files."""
+    def save(self, folder: Path, *others: str, file: str | Sequence[str] = "measurements.csv") -> Path:
+        """Save all inputs as the page offers it; gives the folder of the files. `file`: of each table."""
         downloads: list[Download] = []
 
         def keep(download: Download) -> None:
@@ -223,7 +223,7 @@ class Live:
         self.page.on("download", keep)
         self.click("live-save")
         links = self.page.locator("#live-note a[download]")
-        names = [file, "report.toml", *(others or ("published.csv",))]
+        names = [*([file] if isinstance(file, str) else file), "report.toml", *(others or ("published.csv",))]
         assert links.all_inner_texts() == names
         for _ in range(1500):  # half a minute at most
             if len(downloads) < len(names):
@@ -289,8 +289,8 @@ def with_missing(report: Report, *refused: tuple[str, int]) -> Values:
     for name, test in refused:
         for own in {name, f"u_{name}"} & data.keys():
             data[own] = np.array(data[own], dtype=float)
-            data[own][report.inputs.tests.index(test)] = math.nan
-    labels = {axis.name: report.inputs.tests for axis in report.sheet.axes if not axis.parents}
+            data[own][report.inputs.only.tests.index(test)] = math.nan
+    labels = {axis.name: report.inputs.only.tests for axis in report.sheet.axes if not axis.parents}
     return engine.evaluate(report.sheet, labels, data)
 
 

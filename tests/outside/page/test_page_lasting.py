@@ -274,7 +274,7 @@ def state_with(**changes: Any) -> dict[str, Any]:
             whole[name] = value
         else:
             tests[0][name] = value
-    return whole
+    return {"tables": {"tests": whole["tests"]}, "parameters": whole["parameters"]}
 
 
 CELLS = {"v": "2.3", "e": "0.5", "x_p": "23"}
@@ -350,7 +350,9 @@ def test_edits_of_an_older_issue_stay_where_they_are(open_page: Open, copied: Pa
     assert (live.input("v", 1).input_value(), live.input("x_p", 2).input_value()) == ("2.334", "29.8")
 
 
-@pytest.mark.parametrize("text", ["{", '{"tests": []}', "null", '"x"', json.dumps(state_with(label=-1))])
+@pytest.mark.parametrize(
+    "text", ["{", '{"tables": {"tests": []}}', "null", '"x"', json.dumps(state_with(label=-1))]
+)
 def test_what_was_kept_and_cannot_be_read_is_told(open_page: Open, copied: Path, text: str) -> None:
     live = open_page(copied)
     live.type("x_p", 2, "29.8")

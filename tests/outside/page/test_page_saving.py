@@ -49,7 +49,7 @@ def test_a_test_left_out_stays_with_its_reason(live: Live, open_page: Open, tmp_
     ]
     assert (folder / "published.csv").read_bytes() == (PAPER / "published.csv").read_bytes()
     report = Study(folder).computed
-    assert report.inputs.tests == (1, 2, 4)
+    assert report.inputs.only.tests == (1, 2, 4)
     assert driving.differences(live.cells(), report.values) == []
     # In the page of what was saved they are left out, and can be taken in again.
     fresh = open_page(page_of(folder, tmp_path / "out"))

@@ -81,7 +81,7 @@ def test_rows_keep_their_names_and_a_new_one_gets_one(open_page: Callable[..., L
         "4,,17,30,fell",
         "5,,reading 5,25.0,",
     ]
-    assert Study(saved).inputs.naming == ("specimen",)
+    assert Study(saved).inputs.only.naming == ("specimen",)
     live.click("live-reset")
     assert words() == [*measured[:3], ["4", "", "17"], *computed]
 
