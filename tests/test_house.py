@@ -53,10 +53,15 @@ def rooms(*names: str) -> set[str]:
 AUTHOR = PROVER | rooms("messages", "laws", "distribution", "quantity", "axis", "column", "named", "partly")
 AUTHOR |= rooms("sheet", "charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
-# The words of methods, and what is made of their lines.
-METHOD = rooms(*("algebra", "body", "errors", "ledger", "lines", "made", "places", "shown"))
-METHOD = {each.replace("report.", "report.method_") for each in METHOD}
-METHOD |= rooms("codata", "differences", "fitted", "method")
+# The words of methods and what is made of their lines, from the ground up.
+METHOD = [
+    f"report.{name}"
+    for name in (
+        *("codata", "differences", "method_lines", "fitted", "method_places", "method_body"),
+        *("method_algebra", "method_made", "method_errors", "method_ledger", "method_shown"),
+        *("method_class", "method"),
+    )
+]
 
 MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "": ({"derivations", "report"}, set()),
@@ -135,9 +140,15 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         ),
         RUNTIME - {"scipy", "mpmath"},
     ),
-    **dict.fromkeys(METHOD, (DECLARED | METHOD | {"derivations"}, ALGEBRA | {"scipy"})),
+    **{
+        part: (
+            DECLARED | {*METHOD[: place + 1], "derivations"} | rooms("inputs.keys"),
+            ALGEBRA | ({"scipy"} if part == "report.codata" else set()),
+        )
+        for place, part in enumerate(METHOD)
+    },
     "report.workbooks": (
-        DECLARED | METHOD | rooms("judge", "result", "workbooks") | {"derivations"},
+        DECLARED | {*METHOD, "derivations"} | rooms("judge", "result", "workbooks"),
         ALGEBRA,
     ),
     "report.workbooks.soft_impact_schematics": (

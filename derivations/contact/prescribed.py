@@ -16,7 +16,7 @@ from ..equation import Derivation, Equation, Step
 from ..vocabulary import Quantity
 from . import damping, hertz
 
-__all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solved", "Told", "course"]
+__all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solving", "Told", "course"]
 
 _TAKEN = ("xdot", "c", "g", "e_o", "u_F", "x_F", "W_LN", "W_HG", "W_F")
 _LEFT_ASIDE = ("(L109)", "(L117)", "(L118)")
@@ -64,7 +64,7 @@ def course(author: Author, rate: Expr) -> tuple[Expr, Expr]:
     return at, family.value.xreplace({**here, damping.rate: rate * hertz.v, damping.x: at})
 
 
-class Solved(NamedTuple):
+class Solving(NamedTuple):
     """How a cell is solved for."""
 
     form: Equation
@@ -80,7 +80,7 @@ class Told(NamedTuple):
 
     own: Quantity
     equation: Equation
-    solved: Solved | None = None
+    solved: Solving | None = None
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
     peak = own("F_m", "greatest force", "N", "F_{m,*}", (100.0, 1e4))
     here = {c: number.symbol, e_o: back.symbol, x_m: deepest.symbol, u_F: rate.symbol, F_m: peak.symbol}
 
-    def told(of: Quantity, equation: Equation, solved: Solved | None = None) -> Told:
+    def told(of: Quantity, equation: Equation, solved: Solving | None = None) -> Told:
         return Told(of, replace(equation.at(here), defines=of.symbol), solved)
 
     # Over the factor g the right side of (L120) falls from infinity. If the restitution is known, c is
@@ -139,16 +139,16 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
     exact = Told(
         number,
         replace(returned.at({c: number.symbol, e_o: typed}), defines=number.symbol),
-        Solved(by_factor.at({c: (1 - g) / typed}), g, (1 - g) / typed, typed),
+        Solving(by_factor.at({c: (1 - g) / typed}), g, (1 - g) / typed, typed),
     )
     return Author(
         title,
         exact if member is None else Told(number, member),
         None
         if member is None
-        else told(back, returned, Solved(by_factor.at(here), g, (1 - g) / number.symbol)),
+        else told(back, returned, Solving(by_factor.at(here), g, (1 - g) / number.symbol)),
         told(deepest, approach),
-        told(rate, peak_speed, Solved(peak_speed.at(here), rate.symbol, rate.symbol)),
+        told(rate, peak_speed, Solving(peak_speed.at(here), rate.symbol, rate.symbol)),
         told(peak, greatest),
     )
 

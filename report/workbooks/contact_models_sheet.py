@@ -150,7 +150,7 @@ class _Laid:
         needs: Mapping[Any, Any] | None = None,
         without: Mapping[Symbol, Symbol] | None = None,
         expects: Mapping[Any, tuple[Rel, str]] | None = None,
-        solved: prescribed.Solved | None = None,
+        solved: prescribed.Solving | None = None,
         **more: Any,
     ) -> None:
         """A column by the equation that defines it; one that has it on both sides is solved for it.
