@@ -34,7 +34,8 @@ function times(x, y) {
 
 function power(x, n) {
   const [a, b] = span(x), p = a ** Math.abs(n), q = b ** Math.abs(n);
-  const [c, d] = n % 2 || a > 0 || b < 0 ? out(Math.min(p, q), Math.max(p, q), 4 * Number.EPSILON) : [0, out(p, Math.max(p, q), 4 * Number.EPSILON)[1]];
+  let [c, d] = n % 2 || a > 0 || b < 0 ? out(Math.min(p, q), Math.max(p, q), 4 * Number.EPSILON) : [0, out(p, Math.max(p, q), 4 * Number.EPSILON)[1]];
+  if (a >= 0) c = Math.max(c, 0); // rounding outwards takes no power of a positive number below zero
   if (n > 0) return [c, d];
   return c > 0 || d < 0 ? out(1 / d, 1 / c) : c === 0 ? out(1 / d, Infinity) : ALL;
 }

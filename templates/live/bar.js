@@ -23,7 +23,7 @@ function writeBar(look) {
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
   for (const id of ["reason", "sure", "draws", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
-  byId("bar-hint").textContent = name === null ? bar.hint : `${name}[${index}] has no place in the sheet now: its ${beneath(look.trace.declared[name].axis)?.row} is left out or removed.`;
+  byId("bar-hint").textContent = name === null ? bar.hint : row >= 0 ? "" : `${name}[${index}] has no place in the sheet now: its ${beneath(look.trace.declared[name].axis)?.row} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
 }

@@ -10,7 +10,7 @@ function plus(t,n){let e=t,l=t,u=n,g=n;return t.length&&(e=t[0],l=t[1]),n.length
 
 function times(t,n){let e=t,h=t,a=n,i=n;t.length&&(e=t[0],h=t[1]),n.length&&(a=n[0],i=n[1]);let l=e*a||0,m=e*i||0,o=h*a||0,u=h*i||0;return out(Math.min(l,m,o,u),Math.max(l,m,o,u))}
 
-function power(t,a){const[u,o]=span(t),n=u**Math.abs(a),h=o**Math.abs(a),[m,r]=a%2||u>0||o<0?out(Math.min(n,h),Math.max(n,h),4*Number.EPSILON):[0,out(n,Math.max(n,h),4*Number.EPSILON)[1]];return a>0?[m,r]:m>0||r<0?out(1/r,1/m):0===m?out(1/r,1/0):ALL}
+function power(t,a){const[u,o]=span(t),h=u**Math.abs(a),m=o**Math.abs(a);let[n,M]=a%2||u>0||o<0?out(Math.min(h,m),Math.max(h,m),4*Number.EPSILON):[0,out(h,Math.max(h,m),4*Number.EPSILON)[1]];return u>=0&&(n=Math.max(n,0)),a>0?[n,M]:n>0||M<0?out(1/M,1/n):0===n?out(1/M,1/0):ALL}
 
 function rising(u,n){return n.length?out(u(n[0]),u(n[1]),4*Number.EPSILON):out(u(n),u(n),4*Number.EPSILON)}
 

@@ -215,12 +215,22 @@ def test_what_is_stored_is_what_is_recalculated(office: Office) -> None:
         and (block.title in ("f", "step") or (block.step > 1 and block.title in ("left", "right")))
         for row in range(block.place.rows)
     }
+    # At the least of a sum of squares its derivatives are what rounding left of terms that cancel.
+    found, left = office.paper.values({}).value, dict[tuple[str, str], float]()
+    for block in office.paper.grid.blocks:
+        named = re.fullmatch(r"d (\w+) / d (\w+)", block.name) if block.kind == "slope" else None
+        if named and {*named.groups()} <= found.keys() and found[named[1]].size == 1:
+            share = abs(found[named[1]].item()) / abs(found[named[2]]).max()
+            for row in range(block.place.rows):
+                place = block.place.cell(row, block.place.worksheet).replace("$", "")
+                left[block.place.worksheet, place] = max(1e-12, 1e-12 * share)
+    assert left
     compared = 0
     for worksheet, cells in stored.items():
         for address, value in cells.items():
             again = office.read["as issued"][worksheet].get(address, "")
             if isinstance(value, int | float) and isinstance(again, int | float):
-                near = pytest.approx(value, rel=1e-9, abs=1e-12)
+                near = pytest.approx(value, rel=1e-9, abs=left.get((worksheet, address), 1e-12))
                 assert (worksheet, address) in rests or again == near, (worksheet, address)
             else:
                 assert again == value, (worksheet, address)
