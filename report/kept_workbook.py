@@ -12,7 +12,7 @@ from typing import Any
 from .machine.kept import kept
 from .partly import partly
 from .plan.kept import as_data, of_data
-from .workbook import Either, FigureSpec, Measured, Parameter, SquareSum, TableSpec, Workbook
+from .workbook import Either, FigureSpec, Measured, Parameter, RowTable, SquareSum, TableSpec, Workbook
 
 __all__ = ["known_workbook"]
 
@@ -31,6 +31,7 @@ class _Told:
     row: str
     least: int
     groups: tuple[str, ...]
+    several: tuple[RowTable, ...]
     squares: tuple[SquareSum, ...]
     constants: frozenset[str]
     margins: Mapping[str, str]

@@ -273,7 +273,7 @@ def on_the_page(campaign: Campaign) -> tuple[dict[str, Any], dict[str, Any]]:
         for row, label in enumerate(campaign.tests)
     ]
     parameters = {name: column[0] for name, column in typed.items() if name not in MEASURED}
-    return given, {"tests": tests, "parameters": parameters}
+    return given, {"tables": {"tests": tests}, "parameters": parameters}
 
 
 class Node:
