@@ -19,10 +19,11 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
+from ..cells.grid import Product
 from .order import places
 from .slopes import Local
 
-__all__ = ["Adjoint", "Adjoints", "Solution", "Term", "Unfollowed", "WayBack", "adjoints"]
+__all__ = ["Adjoint", "Adjoints", "Solution", "Term", "Unfollowed", "adjoints"]
 
 
 class Unfollowed(Exception):
@@ -103,23 +104,12 @@ class Adjoint:
         return found - {""}
 
 
-class WayBack(NamedTuple):
-    """A product that is added to the derivative of a cell by a given one."""
-
-    first: str
-    """The quantity whose row is that of the result, or of the given cell if there is no other."""
-    then: str = ""
-    """The quantity whose row is that of the given cell."""
-    named: str | None = None
-    """For a column of results alone: how a result's row must name the given one; empty for the same row."""
-
-
 @dataclass(frozen=True)
 class Adjoints:
     """The derivatives of results by what was given."""
 
     quantities: tuple[Adjoint, ...]
-    ways: Mapping[str, Mapping[str, tuple[WayBack, ...]]]
+    ways: Mapping[str, Mapping[str, tuple[Product, ...]]]
     """Of each result that can be followed, by the given columns that it rests on."""
 
 
@@ -155,7 +145,7 @@ def adjoints(
         What derivatives are asked for by.
     """
     making = _Backwards(nodes, axes, loops, iterated, repeats, indexed)
-    ways: dict[str, dict[str, tuple[WayBack, ...]]] = {}
+    ways: dict[str, dict[str, tuple[Product, ...]]] = {}
     for result in results:
         kept = dict(making.made), dict(making.folds), dict(making.heads)
         try:
@@ -168,7 +158,7 @@ def adjoints(
 
 
 def _needed(
-    made: Mapping[str, Adjoint], ways: Mapping[str, Mapping[str, Iterable[WayBack]]]
+    made: Mapping[str, Adjoint], ways: Mapping[str, Mapping[str, Iterable[Product]]]
 ) -> list[Adjoint]:
     """The quantities on these ways, each after those that it names."""
     needed = {name for own in ways.values() for every in own.values() for way in every for name in way[:2]}
@@ -242,18 +232,18 @@ class _Backwards:
 
     # --- what is asked
 
-    def ways(self, result: str) -> dict[str, tuple[WayBack, ...]]:
+    def ways(self, result: str) -> dict[str, tuple[Product, ...]]:
         """The ways from a result to all that was given."""
         if self.axis(result) is None:
-            return {name: (WayBack(made),) for name, made in self.of_number(result).items()}
-        found: dict[str, list[WayBack]] = {}
+            return {name: (Product(made),) for name, made in self.of_number(result).items()}
+        found: dict[str, list[Product]] = {}
         for (name, index), made in self.along(result, lambda node: False).items():
             if not self.nodes[name].slopes:
-                way = WayBack(made, "", None if self.axis(name) is None else index or "")
+                way = Product(made, "", None if self.axis(name) is None else index or "")
                 found.setdefault(name, []).append(way)
             elif self.axis(name) is None:
                 for given, then in self.of_number(name).items():
-                    found.setdefault(given, []).append(WayBack(made, then))
+                    found.setdefault(given, []).append(Product(made, then))
             else:
                 raise Unfollowed(name)
         return {name: tuple(own) for name, own in found.items()}
