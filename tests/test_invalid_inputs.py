@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from campaign_judging import Tally, compare
@@ -44,9 +45,10 @@ def node(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) 
 
 
 def reader_allows(name: str, value: float) -> bool:
-    """Whether a folder with this number is read."""
+    """Whether a folder with this number, of the unit in SI, is read."""
     declared, findings = WORKBOOK.declared[name], Findings()
-    read = read_value(repr(value), parse_unit(declared.unit), declared, Location("made"), findings)
+    unit = replace(parse_unit(declared.unit), scale=Fraction(1))
+    read = read_value(repr(value), unit, declared, Location("made"), findings)
     return read is not None
 
 

@@ -165,7 +165,8 @@ def test_the_referee_leaves_an_empty_cell_empty(tmp_path: Path, printed: str, ve
 def test_the_page_keeps_an_empty_cell_empty(tmp_path: Path) -> None:
     page = html.render(Study(readings(tmp_path / "r")).report, {}, program="")
     known = json.loads(re.findall(r'id="?live-data"?>(.*?)</script>', page, re.DOTALL)[0])
-    assert [row["cells"] for row in known["tests"]] == [
+    (table,) = known["tables"].values()
+    assert [row["cells"] for row in table["rows"]] == [
         {"a": "1.00", "b": "2.00"}, {"a": "1.10", "b": ""}, {"a": "1.30", "b": "2.20"},
     ]  # fmt: skip
 

@@ -91,7 +91,7 @@ def test_uncertainties_and_reasons_in_such_a_table(read: Reader) -> None:
     assert [p.text for p in found.measured["v"]] == ["2.334", "2.940"]
     assert found.measured["v"][0].stated[0].width == Fraction(5, 1000)
     assert [p.text for p in found.measured["x_p"]] == ["2.35e1", "29.7"]
-    assert [each.reason for each in found.left_out] == ["1,5; 2,5, or so"]
+    assert [each.reason for each in found.only.left_out] == ["1,5; 2,5, or so"]
 
 
 def test_words_do_not_tell_what_a_comma_is(read: Reader) -> None:
@@ -99,8 +99,8 @@ def test_words_do_not_tell_what_a_comma_is(read: Reader) -> None:
     rows = ["1;24.11.2026;2,334;0,530;23,5;rim", "2;25.11.2026;2,940;0,512;29,7;3.5", "3;x;2,9;0,5;30;1,5"]
     found = read(csv="\n".join(["test;day;v [m/s];e [1];x_p [um];remark", *rows]))
     assert [p.text for p in found.measured["v"]] == ["2.334", "2.940", "2.9"]
-    assert [found.texts[n]["remark"] for n in (1, 2, 3)] == ["rim", "3.5", "1,5"]
-    assert found.texts[1]["day"] == "24.11.2026"
+    assert [found.only.texts[n]["remark"] for n in (1, 2, 3)] == ["rim", "3.5", "1,5"]
+    assert found.only.texts[1]["day"] == "24.11.2026"
 
 
 THOUSANDS = "test;v [m/s];e [1];x_p [um]\n1;2,334;1;2,350\n2;2,940;1;2,970\n"

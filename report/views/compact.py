@@ -116,12 +116,15 @@ def _short_rules(text: str) -> str:
 _FLOW = "article|aside|div|dl|footer|h[1-6]|header|nav|ol|p|section|table|ul"
 _IMPLIED = re.compile(
     r"(?P<kept><(?P<name>script|style)\b[\s\S]*?</(?P=name)>)"
-    r"|</t[dh]>(?=<t[dh][ >]|</tr>)|</tr>(?=<tr[ >]|</t(?:body|head)>)|</thead>(?=<tbody[ >])"
-    r"|</tbody>(?=</table>)|</li>(?=<li[ >]|</[ou]l>)|</d[dt]>(?=<d[dt][ >]|</dl>)"
-    rf"|</p>(?=<(?:{_FLOW})[ >])"
+    r"|</t[dh]>(?=<t[dh][ >]|</tr>(?!<tr[ >]))|</tr>(?=<tr[ >])|</thead>(?=<tbody[ >])|</tbody>(?=</table>)"
+    r"|</li>\n?(?=<li[ >])|</d[dt]>(?=<d[dt][ >]|</d(?:l|iv)>)"
+    rf"|</p>\n?(?=<(?:{_FLOW})[ >]|</(?:article|aside|div|section|td)>|</li>(?!<li[ >]))"
     r"|(?P<tag><(?!meta)[a-z]\w*(?: [\w-]+(?:=\"[^\"<>]*\")?)+ ?/?>)"
 )
-"""End tags that HTML lets one leave out, for what comes next says that the element is over; and tags."""
+"""End tags that HTML lets one leave out, for what comes next says that the element is over; and tags.
+
+Where the end tag of what is around it goes too (`</td></tr><tr>`), one of both stays: validators ask for it.
+"""
 
 
 def short_markup(page: str) -> str:
@@ -130,7 +133,7 @@ def short_markup(page: str) -> str:
     Scripts and styles stay.
 
     >>> short_markup("<ul><li>1</li><li>2</li></ul><script>'</li><li>'</script>")
-    "<ul><li>1<li>2</ul><script>'</li><li>'</script>"
+    "<ul><li>1<li>2</li></ul><script>'</li><li>'</script>"
     >>> short_markup('<td class="p0" title="a b">x="1" </td>')
     '<td class=p0 title="a b">x="1" </td>'
     >>> short_markup('<a href="#i"><path d="m0 1" class="s1"/></a>')

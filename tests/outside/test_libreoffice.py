@@ -215,15 +215,20 @@ def test_what_is_stored_is_what_is_recalculated(office: Office) -> None:
         and (block.title in ("f", "step") or (block.step > 1 and block.title in ("left", "right")))
         for row in range(block.place.rows)
     }
-    # At the least of a sum of squares its derivatives are what rounding left of terms that cancel.
+    # At the least of a sum of squares its derivatives are what rounding left of terms that cancel: they are
+    # compared as all else is, but with y/x, the size that a derivative dy/dx has by itself.
     found, left = office.paper.values({}).value, dict[tuple[str, str], float]()
     for block in office.paper.grid.blocks:
-        named = re.fullmatch(r"d (\w+) / d (\w+)", block.name) if block.kind == "slope" else None
-        if named and {*named.groups()} <= found.keys() and found[named[1]].size == 1:
-            share = abs(found[named[1]].item()) / abs(found[named[2]]).max()
+        ways = r"d (?:step of )?(\w+) / d (?:step of )?(\w+?)(?:_sum_\d+)?(?: again| along \w+)*"
+        named = re.fullmatch(ways, block.name) if block.kind == "slope" else None
+        if named and {*named.groups()} <= found.keys():
+            share = abs(found[named[1]]).max() / abs(found[named[2]]).max()
             for row in range(block.place.rows):
                 place = block.place.cell(row, block.place.worksheet).replace("$", "")
-                left[block.place.worksheet, place] = max(1e-12, 1e-12 * share)
+                left[block.place.worksheet, place] = max(1e-12, 1e-9 * share)
+        elif block.kind == "slope" and re.fullmatch(r"\w+_sum_\d+", block.name):
+            # A sum that a fit makes zero, of terms up to 1e4.
+            left[block.place.worksheet, block.place.cell(0, block.place.worksheet).replace("$", "")] = 1e-8
     assert left
     compared = 0
     for worksheet, cells in stored.items():
