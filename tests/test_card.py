@@ -343,6 +343,9 @@ def test_the_list_of_codes_needs_no_folder(capsys: pytest.CaptureFixture[str]) -
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        (["--model", "hertz"], "LS614]: --model says nothing without a code"),
+        (["--for", "lammps", "--E", "210e9"], "LS211]: E has no unit: '210e9'"),
+        (["--for", "lammps", "--E", "-5 GPa"], "LS406]: E is out of range: '-5'"),
         (["--for", "mujocco"], "LS604]: unknown code 'mujocco'"),
         (
             ["--for", "drake", "--E", "210 GPa"],

@@ -19,7 +19,7 @@ A S Carvalho, J M Martins, Mech Mach Theory 139 (2019) 174, 10.1016/j.mechmachth
 
 from __future__ import annotations
 
-from sympy import Expr, Integer, Integral, Rational, Symbol, log, pi, sqrt
+from sympy import Expr, Integer, Integral, Rational, Symbol, exp, log, pi, sqrt
 from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Ledger, Step, define
@@ -29,7 +29,7 @@ from .quantities import SHARED
 # fmt: off
 __all__ = [  # noqa: RUF022 - symbols, then equations in their order
     "x", "rate", "F", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "F_m", "W",
-    "family", "compression", "left", "rebound", "work", "approach", "returned", "by_factor", "peak_speed",
+    "q", "family", "compression", "left", "rebound", "work", "approach", "returned", "by_decay", "peak_speed",
     "peak_approach", "greatest", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores",
     "MEMBERS", "LEDGER",
 ]
@@ -49,6 +49,9 @@ VOCABULARY = Vocabulary(
     Quantity("v_0", "impact speed", "m/s", "v_{0%s}", (0.5, 8.0)),
     Quantity("m_red", "reduced mass of the two bodies", "kg", "m_{red%s}", (1e-3, 1e-1)),
     Quantity("g", "factor of the force that the damping leaves at separation", "1", "g%s", (0.05, 0.95)),
+    Quantity(
+        "q", "how far the damping lowers the force at separation, as a logarithm", "1", "q%s", (0.05, 3.0)
+    ),
     Quantity("x_m", "maximum approach", "m", "x_{m%s}", (1e-5, 1e-4)),
     Quantity("u_F", "rate at the greatest force, over the impact speed", "1", "u_{F%s}", (0.05, 0.95)),
     Quantity("x_F", "approach at the greatest force", "m", "x_{F%s}", (1e-6, 1e-4)),
@@ -68,8 +71,8 @@ VOCABULARY = Vocabulary(
     Quantity("W_HG", "the same, as Hu and Guo take it", "J", "W_{HG%s}", (1e-3, 1.0)),
     Quantity("W_F", "the same, as Flores and others take it", "J", "W_{F%s}", (1e-3, 1.0)),
 )
-x, rate, F, K, n, c, e, e_o, v_0, m_red, x_m, u_F, x_F, F_m, g, J, W = VOCABULARY.plain(
-    "x xdot F K n c e e_o v_0 m_red x_m u_F x_F F_m g J W"
+x, rate, F, K, n, c, e, e_o, v_0, m_red, x_m, u_F, x_F, F_m, g, q, J, W = VOCABULARY.plain(
+    "x xdot F K n c e e_o v_0 m_red x_m u_F x_F F_m g q J W"
 )
 c_LN, c_HG, c_F, c_HC, c_LW, c_G, c_CM = VOCABULARY.plain("c_LN c_HG c_F c_HC c_LW c_G c_CM")
 W_LN, W_HG, W_F = VOCABULARY.plain("W_LN W_HG W_F")
@@ -142,10 +145,12 @@ with evaluate(False):
         title="restitution that is returned",
         conditions=(_within,),
     )
-    by_factor = Equation(
+    # The factor falls as exp(-c): its logarithm is what can be solved for.
+    decay = define("", q, -log(g), "logarithm of that factor")
+    by_decay = Equation(
         "(L120)",
-        (c + 1 - g, log((1 + c) / g)),
-        "(L106) in terms of the factor g = 1 - c e_o that damping leaves at separation",
+        (log(1 + c) + q, c + 1 - exp(-q)),
+        "(L106) in terms of the factor exp(-q) = 1 - c e_o that damping leaves at separation",
         title="restitution by the factor of the damping at separation",
     )
 
@@ -376,7 +381,9 @@ LEDGER = Ledger(
                 ),
             )
         ),
-        Derivation((Step(by_factor, (left, returned), (e_o,), "Put the factor in.", multiplier=Integer(1)),)),
+        Derivation(
+            (Step(by_decay, (decay, left, returned), (g, e_o), "Put the factor in.", multiplier=Integer(-1)),)
+        ),
         Derivation.of(peak_approach, (work_peak,), (K,), "Integrate both sides."),
         Derivation(
             (

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from sympy import Expr, Integer, Max, Rational, Symbol, beta
+from sympy import Expr, Integer, Max, Rational, Rel, Symbol, beta, exp, log
 
 from ..equation import Derivation, Equation, Step
 from ..vocabulary import Quantity
@@ -18,7 +18,7 @@ from . import damping, hertz
 
 __all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solving", "Told", "course"]
 
-_TAKEN = ("xdot", "c", "g", "e_o", "u_F", "x_F", "W_LN", "W_HG", "W_F")
+_TAKEN = ("xdot", "c", "g", "q", "e_o", "u_F", "x_F", "W_LN", "W_HG", "W_F")
 _LEFT_ASIDE = ("(L109)", "(L117)", "(L118)")
 _ELASTIC = replace(damping.VOCABULARY["W"], name="W_el", latex=r"W_{\mathrm{el}%s}")
 _FORCE = Quantity("F_damped", "force with damping", "N", r"F_{d%s}", (1.0, 5000.0))
@@ -71,8 +71,11 @@ class Solving(NamedTuple):
     unknown: Symbol
     value: Expr
     """`form`, `unknown` and `value`: what is solved, for what, and the cell in terms of that."""
-    end: Expr = Integer(1)
-    """The unknown is between 0, where the left side of the form is the smaller one, and this."""
+    low: Expr
+    high: Expr
+    start: Expr
+    """`low`, `high` and `start`: the open interval of the unknown, at whose low end the left side of the form
+    is the smaller one; and a first guess."""
 
 
 class Told(NamedTuple):
@@ -81,6 +84,8 @@ class Told(NamedTuple):
     own: Quantity
     equation: Equation
     solved: Solving | None = None
+    needs: tuple[tuple[Rel, str], ...] = ()
+    """What must hold, and what it means if it does not."""
 
 
 @dataclass(frozen=True)
@@ -103,14 +108,14 @@ class Author:
         return tuple(each for each in (self.c, self.e, self.x_m, self.u_F, self.F_m) if each)
 
 
-family, returned, by_factor, approach, peak_approach, peak_speed, greatest = map(
+family, returned, by_decay, approach, peak_approach, peak_speed, greatest = map(
     _here,
     (
-        damping.family, damping.returned, damping.by_factor, damping.approach, damping.peak_approach,
+        damping.family, damping.returned, damping.by_decay, damping.approach, damping.peak_approach,
         damping.peak_speed, damping.greatest,
     ),
 )  # fmt: skip
-c, g, e_o, x_m, u_F, F_m = damping.c, damping.g, damping.e_o, damping.x_m, damping.u_F, damping.F_m
+c, q, e_o, x_m, u_F, F_m = damping.c, damping.q, damping.e_o, damping.x_m, damping.u_F, damping.F_m
 
 
 def _author(mark: str, title: str, member: Equation | None) -> Author:
@@ -134,25 +139,31 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
     def told(of: Quantity, equation: Equation, solved: Solving | None = None) -> Told:
         return Told(of, replace(equation.at(here), defines=of.symbol), solved)
 
-    # Over the factor g the right side of (L120) falls from infinity. If the restitution is known, c is
-    # (1 - g)/e, and it meets the left side below g = e, and at g = 1, where nothing is damped.
-    exact = Told(
-        number,
-        replace(returned.at({c: number.symbol, e_o: typed}), defines=number.symbol),
-        Solving(by_factor.at({c: (1 - g) / typed}), g, (1 - g) / typed, typed),
-    )
+    # The sides of (L120) are alike at q = 0, where the bodies part as fast as they met. Its other root is
+    # between log(1 + c) and c; if the restitution is known, so that c is (1 - exp(-q))/e, between -log(e) and
+    # the number of (L115). From the upper ends on, Newton's steps come down to it.
+    if member is None:
+        equation, damped = returned.at({c: number.symbol, e_o: typed}), (1 - exp(-q)) / typed
+        sought = Solving(by_decay.at({c: damped}), q, damped, -log(typed), *(2 * (1 / typed - typed,)))
+        tells, gives = Told(number, replace(equation, defines=number.symbol), sought), None
+    else:
+        gone = (1 - exp(-q)) / number.symbol
+        sought = Solving(by_decay.at(here), q, gone, log(1 + number.symbol), *(2 * (number.symbol,)))
+        tells, gives = Told(number, member), told(back, returned, sought)
+    divides = member is None or not member.value.subs(typed, 0).is_finite
     return Author(
         title,
-        exact if member is None else Told(number, member),
-        None
-        if member is None
-        else told(back, returned, Solving(by_factor.at(here), g, (1 - g) / number.symbol)),
+        tells._replace(needs=(_LOSSY, _FINITE) if divides else (_LOSSY,)),
+        gives,
         told(deepest, approach),
-        told(rate, peak_speed, Solving(peak_speed.at(here), rate.symbol, rate.symbol)),
+        told(rate, peak_speed, Solving(peak_speed.at(here), rate.symbol, rate.symbol, *_FROM_ZERO_TO_ONE)),
         told(peak, greatest),
     )
 
 
+_LOSSY = (hertz.e < 1, "e = 1: nothing is lost, so that nothing is damped")
+_FINITE = (hertz.e > Rational(1, 2**30), "e = 0: the damping number would have to be infinite")
+_FROM_ZERO_TO_ONE = (Integer(0), Integer(1), hertz.half)
 _MARKS = {
     "hunt_crossley": "HC",
     "lee_wang": "LW",

@@ -9,7 +9,7 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import parse_unit
+from ...derivations.unit_text import is_pure, parse_unit
 from ..messages.errors import Findings, Location, listing, suggest
 from .number_text import read_unit_of, read_value
 from .stated import Of, StatementError, read_statement, split
@@ -27,7 +27,7 @@ __all__ = ["Said", "known", "planned", "read_numbers", "read_u"]
 Said = Mapping[str, "StatedErrors"]
 """What is stated of columns and parameters, by name."""
 
-_NUMBER = re.compile(r"(?P<number>[0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)", re.DOTALL)
+_NUMBER = re.compile(r"(?P<number>[+-]?[0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)", re.DOTALL)
 _NAMED = re.compile(r"(?P<name>\w+)\s*=\s*")
 _BARE = re.compile(r"[0-9.][^%;,]*")
 _SAYS = "u = "
@@ -53,7 +53,7 @@ def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -
     like : Measured
         What they are.
     unit : str
-        Of those that name none, if the last one does not name one either.
+        Of those that name none, if the last one does not name one either; empty: it is missed.
 
     Returns
     -------
@@ -74,6 +74,10 @@ def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -
     common = parts[-1][1] or unit
     for number, own, start, behind in parts:
         at = _place(option, text, behind if own else start, len(own or number))
+        if not (own or common or is_pure(like.unit)):
+            example = f"{number} {like.unit}"
+            findings.add("LS211", at, name=like.name, text=number, unit=like.unit, example=example)
+            continue
         size = read_unit_of(own or common, like, at, findings)
         value = read_value(number, size, like, _place(option, text, start, len(number)), findings)
         if value is not None:

@@ -20,8 +20,10 @@ MOST = 100_000
 """Impacts of a sweep: a quarter of an hour."""
 MOST_IN_ONE_PLACE = 1000
 """Impacts of a course, of some hundred lines each."""
-_NUMBERS = {"speed": "m/s", "E": "GPa", "nu": "1", "R": "m"}
-"""The options that are numbers, and the unit of one that names none."""
+_NUMBERS = {"speed": "m/s", "E": "", "nu": "1", "R": ""}
+"""The options that are numbers, and the unit of one that names none; empty where it has to name one."""
+_OF_A_CARD = ("model", *_NUMBERS, "sweep", "course")
+"""The options that say nothing to the list of codes."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,11 +74,17 @@ def run(options: argparse.Namespace) -> int:
     """Print a card, a list of the codes, or the identified law; exit code 1 if the data are at fault."""
     from ..impacts.codes import CODES
     from ..impacts.source import SOURCES
-    from ..messages.errors import UsageError, diagnose, listing, suggest
+    from ..messages.errors import UsageError, diagnose, listing, suggest, wrong
 
     if options.code == "list":
+        named = [name for name in _OF_A_CARD if getattr(options, name) is not None]
+        if named:
+            raise wrong(f"--{named[0]} says nothing without a code", "name one in --for CODE")
         titles = [(code.name, code.title) for code in CODES.values()]
         titles += [(name, source.said) for name, source in SOURCES.items()]
+        if options.folder is not None:
+            with studied(options.folder) as study:
+                titles += [(model.name, model.title) for model in study.inputs.workbook.models]
         print(*(f"{name:14} {title}" for name, title in titles), sep="\n")
         return OK
     with studied(options.folder) as study:
@@ -202,5 +210,5 @@ def _read(options: argparse.Namespace, name: str) -> float | None:
         return None
     found = read_numbers(text, f"--{name}", ";", NUMBERS[name], _NUMBERS[name])
     if len(found) != 1:
-        raise wrong(f"--{name} '{text}' is not one number", f"--{name} '1 {_NUMBERS[name]}'")
+        raise wrong(f"--{name} '{text}' is not one number", f"--{name} '1 {NUMBERS[name].unit}'")
     return found[0]

@@ -11,7 +11,6 @@ from sympy import Expr, Indexed, Integer, Rational, Rel, Symbol
 from ...derivations.contact import checks, hertz, johnson, prescribed
 from ...derivations.contact.model import ContactModel
 from ...derivations.contact.models import BESIDE, LEDGER, MODELS
-from ...derivations.contact.one_constant import COMES_BACK, LOSES
 from ...derivations.equation import Equation
 from ...derivations.global_fit import n_tests
 from ...derivations.symbols import k
@@ -182,11 +181,9 @@ class _Laid:
             low, high = map(Rational, map(str, own.span))
             rule = Root(said, said, symbol, symbol, low, high, (low + high) / 2, steps=8)
             if solved is not None:
-                end = solved.end.xreplace(cells)
-                rule = Root(
-                    said, solved.form.at(cells), solved.unknown, solved.value.xreplace(cells),
-                    Integer(0), end, end / 2, Integer(-1), Integer(1), steps=8,
-                )  # fmt: skip
+                value, low, high, start = (part.xreplace(cells) for part in solved[2:])
+                form, below, above = solved.form.at(cells), Integer(-1), Integer(1)
+                rule = Root(said, form, solved.unknown, value, low, high, start, below, above, steps=8)
         column = replace(blank, rule=rule, requires=requires, limits=limits)
         self.columns[new.name] = column
         self.where |= {new: column.cell}
@@ -195,8 +192,7 @@ class _Laid:
 
     def tell_prescribed(self, told: prescribed.Told) -> None:
         """A cell of the damping that a typed restitution gets."""
-        needs = {told.own.symbol: (COMES_BACK, LOSES)} if told.own.name.startswith("c_") else None
-        self.tell(told.equation, needs, solved=told.solved)
+        self.tell(told.equation, {told.own.symbol: told.needs}, solved=told.solved)
 
     def limits(self, expected: tuple[Rel, str] | None, where: Mapping[Expr, Expr]) -> list[Limit]:
         """Where a cell is expected, if all that this names is in the sheet."""

@@ -60,8 +60,12 @@ const sameTraces = (some, others) => JSON.stringify(some) === JSON.stringify(oth
 // A panel for each row of the axis that is repeated, of many for some; a line has the colour of its series.
 function drawPanels({ height, log, panels }, series, own, ghosts, { ends }, titled, mark) {
   const named = new Map(own.flat().map(([{ row, name }]) => [name, row])), rows = [...named.keys()].sort((a, b) => named.get(a) - named.get(b));
-  const shown = evenly(rows.length, MOST_PANELS).map((n) => rows[n]), across = Math.min(shown.length, IN_A_ROW), top = 33;
-  const svg = canvas(WIDTH, top + Math.ceil(shown.length / across) * height), keys = new Map(), width = WIDTH / across;
+  const shown = evenly(rows.length, MOST_PANELS).map((n) => rows[n]), across = Math.min(shown.length, IN_A_ROW);
+  const keys = new Map(), width = WIDTH / across, legend = draw("g", {});
+  for (const { label, colour } of series) keys.set(plainOf(label), { mark: mark("M0 0h13", { stroke: colour, "stroke-width": 1.4 }), text: label });
+  if (ghosts.flat().length) keys.set("", { mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
+  const top = Picture.prototype.key.call({ svg: legend }, [...keys.values()]) + 11;
+  const svg = canvas(WIDTH, top + Math.ceil(shown.length / across) * height);
   shown.forEach((row, n) => {
     const picture = new Picture({ height, log, width, small: true }, ends, titled(["", `${panels} ${row}: `]), 14);
     for (const way of ghosts.flat()) if (way[0].name === row) picture.line(way, GHOST, 1);
@@ -69,9 +73,7 @@ function drawPanels({ height, log, panels }, series, own, ghosts, { ends }, titl
     const at = [(n % across) * width, top + Math.floor(n / across) * height];
     svg.append(draw("g", { transform: `translate(${at})` }, ...picture.svg.childNodes));
   });
-  for (const { label, colour } of series) keys.set(plainOf(label), { mark: mark("M0 0h13", { stroke: colour, "stroke-width": 1.4 }), text: label });
-  if (ghosts.flat().length) keys.set("", { mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
-  Picture.prototype.key.call({ svg }, [...keys.values()]);
+  svg.append(legend);
   return { svg, says: `${[...keys.values()].map(({ text }) => plainOf(text)).join("; ")}.` };
 }
 

@@ -138,6 +138,7 @@ class Picture {
       this.svg.append(group);
       x += 19 + textWidth(plain, 8.5) + 16;
     }
+    return y;
   }
 }
 
