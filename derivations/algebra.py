@@ -22,6 +22,7 @@ from sympy import (
     Pow,
     Sum,
     Symbol,
+    Wild,
     acos,
     acosh,
     acoth,
@@ -29,6 +30,7 @@ from sympy import (
     asinh,
     atan,
     atanh,
+    beta,
     ceiling,
     cos,
     cosh,
@@ -204,11 +206,24 @@ def _of_power(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | None:
     base, power = inner.as_base_exp()
     slope = _slope(base, variable)
     if slope is None or power.has(variable) or not (power + 1).is_positive:
-        return None
+        return _of_euler(inner, variable, low, high, outer)
     at_low, at_high = (together(base.xreplace({variable: end})) for end in (low, high))
     if not (power.is_integer or (at_low.is_nonnegative and at_high.is_nonnegative)):
         return None
     return outer * (at_high ** (power + 1) - at_low ** (power + 1)) / (power + 1) / slope
+
+
+def _of_euler(inner: Expr, variable: Expr, low: Expr, high: Expr, outer: Expr) -> Expr | None:
+    """Integrate a factor times y^a (1 - y^m)^b, a > -1, b > -1, from 0 to 1 (DLMF 5.12.1, with y^m for t)."""
+    a, m, b = (Wild(name, exclude=[variable]) for name in "amb")
+    found = inner.match(variable**a * (1 - variable**m) ** b)
+    if (
+        found is None
+        or (low, high) != (0, 1)
+        or not all(positive.xreplace(found).is_positive for positive in (a + 1, b + 1, m))
+    ):
+        return None
+    return outer * beta((found[a] + 1) / found[m], found[b] + 1) / found[m]
 
 
 def _powers(expression: Expr) -> Expr:

@@ -22,10 +22,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.stats import chi2
-from sympy import Expr, Rational, Symbol, beta, lambdify
+from sympy import Expr, Integral, Rational, Symbol, beta, lambdify, sqrt
 
 import loopsheet
 from loopsheet.derivations import soft_impact as paper
+from loopsheet.derivations.algebra import in_powers
 from loopsheet.derivations.contact import checks, hertz, johnson, thornton
 from loopsheet.derivations.contact.hertz import HERTZ
 from loopsheet.derivations.contact.lankarani_1994 import LANKARANI_1994
@@ -70,6 +71,7 @@ def wrong() -> Iterator[tuple[str, Any]]:
     """The label of a claim, and what a slip of the pen makes of its last side."""
     for label, factors in {
         "(L122)": (2,), "(L189)": (2, Rational(1, 2)),
+        "(L129)": (2, Rational(1, 2)), "(L150)": (2,), "(L162)": (2,), "(L166)": (Rational(2, 3),),
         "(L126)": (2, Rational(3, 4)), "(L127)": (2, Rational(4, 5)), "(L132)": (2, Rational(4, 3)),
         "(L133)": (2, Rational(5, 2)), "(L134)": (2, Rational(4, 5)), "(L138)": (4, Rational(1, 2)),
         "(L139)": (2, Rational(1, 4)), "(L142)": (2, Rational(1, 2)), "(L143)": (2, Rational(1, 2)),
@@ -598,6 +600,32 @@ def test_exponents_by_restitutions_follow_from_synthetic_ones() -> None:
 
 
 # --- the beta function --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("a", "m", "b"),
+    [(0, Rational(5, 2), Rational(-1, 2)), (Rational(3, 2), 2, Rational(1, 2)), (0, 2, Rational(-1, 2)),
+     (Rational(-1, 3), Rational(7, 3), Rational(3, 4))],
+)  # fmt: skip
+def test_shares_of_a_way_are_summed_as_by_numbers(a: Expr, m: Expr, b: Expr) -> None:
+    share = Symbol("r", positive=True)
+    closed = in_powers(Integral(share**a * (1 - share**m) ** b, (share, 0, 1)))
+    assert closed is not None
+    with mpmath.workdps(60):  # an end where the rate is zero costs half of the digits
+        summed = mpmath.quad(lambdify(share, share**a * (1 - share**m) ** b, "mpmath"), [0, 0.5, 1])
+        assert abs(closed.evalf(40) / summed - 1) < 1e-20
+
+
+def test_what_is_no_share_of_a_way_is_not_summed_so() -> None:
+    share, c = Symbol("r", positive=True), Symbol("c", positive=True)
+    root = 1 / sqrt(1 - share ** Rational(5, 2))
+    for integral in (
+        Integral(root, (share, 0, c)),
+        Integral(root**3, (share, 0, 1)),
+        Integral(root / share, (share, 0, 1)),
+        Integral(root / sqrt(1 - share), (share, 0, 1)),
+    ):
+        assert in_powers(integral) is None
 
 
 @pytest.mark.parametrize("digits", [18, EXACT])

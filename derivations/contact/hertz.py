@@ -7,7 +7,9 @@ S Timoshenko, J N Goodier, Theory of Elasticity, 3rd ed. 1970, for the impact; K
 
 from __future__ import annotations
 
-from sympy import Expr, Integer, Integral, Rational, beta, pi, sqrt
+from collections.abc import Callable
+
+from sympy import Expr, Integer, Integral, Rational, Symbol, beta, pi, sqrt
 from sympy.core.parameters import evaluate
 
 from ..equation import Derivation, Equation, Kind, Step, define
@@ -19,14 +21,16 @@ __all__ = [
     "CONTACT",
     "HERTZ",
     "duration",
+    "elastic_duration",
     "half",
-    "lasting_elastic",
+    "lasts",
     "modulus",
     "radius",
     "radius_of_two",
     "recovery",
     "returned_work",
     "stiffness",
+    "timed",
     "unloads",
 ]
 
@@ -46,28 +50,58 @@ x_m, peak, t, e_H, x_p = _WORDS.plain("x_m_hertz F_m_hertz t_hertz e_hertz x_p_h
 half, hertz = Rational(1, 2), Rational(3, 2)
 
 
-def lasts(exponent: Expr) -> Expr:
-    """How long the compression under a power of the approach takes, over that of its way at impact speed.
+Over = Callable[[Expr], Expr]
+"""How long the compression under a power of the approach takes, over that of its way at impact speed; the
+restitution takes as long, over its way at the speed of rebound."""
 
-    The restitution takes as long, over its way at the speed of rebound. The approach divided by its rate,
-    summed over the way, is Euler's beta function (DLMF 5.12.1).
-    """
+
+def passing(exponent: Expr) -> Expr:
+    """That, as what the shares of the way take: the energy that is left tells the rate at each."""
+    return Integral(1 / sqrt(1 - r ** (exponent + 1)), (r, 0, 1))
+
+
+def lasts(exponent: Expr) -> Expr:
+    """That, as Euler's beta function."""
     power = exponent + 1
     return beta(1 / power, half) / power
 
 
-def duration(x_m: Expr, x_p: Expr, e: Expr, compression: Expr = hertz, restitution: Expr = hertz) -> Expr:
+def duration(
+    x_m: Expr, x_p: Expr, e: Expr, compression: Expr = hertz, restitution: Expr = hertz, *, over: Over
+) -> Expr:
     """How long a contact lasts under two powers of the approach: the way of each branch over its rate.
 
     `x_m`, `x_p` and `e`: maximum approach, imprint, coefficient of restitution. `compression` and
     `restitution`: the exponents of both branches.
     """
-    return x_m / v * lasts(compression) + (x_m - x_p) / (e * v) * lasts(restitution)
+    return x_m / v * over(compression) + (x_m - x_p) / (e * v) * over(restitution)
 
 
-def lasting_elastic(x_m: Expr) -> Expr:
+def elastic_duration(x_m: Expr, *, over: Over) -> Expr:
     """How long an elastic contact lasts: both branches are the same way."""
-    return 2 * lasts(hertz) * x_m / v
+    return 2 * over(hertz) * x_m / v
+
+
+def timed(number: str, t: Symbol, title: str, taken: Callable[..., Expr], *of: Expr) -> Derivation:
+    """The duration of a contact, from the way of its branches.
+
+    `taken` and `of`: what it is of what, :func:`duration` or :func:`elastic_duration`.
+    """
+    way = Equation(
+        "",
+        (t, taken(*of, over=passing)),
+        "the way over its rate, which the energy that is left tells",
+        Kind.ASSUMPTION,
+        f"shares of the way: {title}",
+    )
+    closed = Equation(
+        number,
+        (t, taken(*of, over=lasts)),
+        "the shares of the way summed, by Euler's beta function (DLMF 5.12.1)",
+        title=title,
+        defines=t,
+    )
+    return Derivation.of(closed, (way,), (t,), "Sum the shares of the way.")
 
 
 def unloads(peak: Expr, x_m: Expr, x_p: Expr) -> Expr:
@@ -150,13 +184,7 @@ with evaluate(False):
         title="greatest force of an elastic impact",
         defines=peak,
     )
-    lasting = define(
-        "(L129)",
-        t,
-        lasting_elastic(x_m),
-        "duration of an elastic impact",
-        "the approach divided by its rate, summed back and forth (DLMF 5.12.1)",
-    )
+    lasting = timed("(L129)", t, "duration of an elastic impact", elastic_duration, x_m)
     elastic = Equation(
         "(L130)", (e_H, Integer(1)), "nothing is lost", Kind.ASSUMPTION, "restitution of an elastic impact",
         defines=e_H,
@@ -252,7 +280,7 @@ HERTZ = ContactModel(
         elastic,
         no_imprint,
     ),
-    cells=(approach, greatest, lasting, elastic, no_imprint),
+    cells=(approach, greatest, lasting.claim, elastic, no_imprint),
     predicts={"x_m": x_m, "F_m": peak, "t": t, "e": e_H, "x_p": x_p},
     loading=force.value,
     unloading=force.value,

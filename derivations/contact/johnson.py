@@ -151,12 +151,8 @@ with evaluate(False):
         title="imprint of a fully plastic impact",
         defines=x_p,
     )
-    lasting = define(
-        "(L150)",
-        t,
-        hertz.duration(x_m, x_p, e_J, Integer(1)),
-        "duration of a fully plastic impact",
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
+    lasting = hertz.timed(
+        "(L150)", t, "duration of a fully plastic impact", hertz.duration, x_m, x_p, e_J, Integer(1)
     )
     by_restitution = Equation(
         "(L147)",
@@ -236,7 +232,7 @@ JOHNSON = ContactModel(
         *_entries,
         lasting,
     ),
-    cells=(approach, greatest, restitution, imprint, lasting),
+    cells=(approach, greatest, restitution, imprint, lasting.claim),
     predicts={"x_m": x_m, "F_m": peak, "t": t, "e": e_J, "x_p": x_p},
     loading=law.value,
     unloading=hertz.unloads(peak, x_m, x_p),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Step, define
+from ..equation import Derivation, Equation, Step
 from ..soft_impact import XM, XP, E
 from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
@@ -50,12 +50,8 @@ with evaluate(False):
         "the same, told by the greatest force",
         title="imprint by the greatest force",
     )
-    lasting = define(
-        "(L166)",
-        t,
-        hertz.duration(x_m, x_p, e),
-        "duration of the contact by Lankarani and Nikravesh",
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
+    lasting = hertz.timed(
+        "(L166)", t, "duration of the contact by Lankarani and Nikravesh", hertz.duration, x_m, x_p, e
     )
 
 LANKARANI_1994 = ContactModel(
@@ -95,7 +91,7 @@ LANKARANI_1994 = ContactModel(
         ),
         lasting,
     ),
-    cells=(hertz.approach, hertz.greatest, imprint, lasting),
+    cells=(hertz.approach, hertz.greatest, imprint, lasting.claim),
     predicts={"t": t, "x_p": x_p},
     needs={x_p: LOSES},
     loading=hertz.HERTZ.loading,

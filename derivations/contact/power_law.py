@@ -11,7 +11,7 @@ from ..soft_impact import XM, XP, E
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
-from .hertz import duration
+from .hertz import duration, timed
 from .model import ContactModel
 from .quantities import SHARED
 
@@ -43,12 +43,8 @@ with evaluate(False):
         title="imprint by law (3)",
         defines=x_p,
     )
-    lasting = define(
-        "(L162)",
-        t,
-        duration(x_m, x_p, e, paper.alpha, beta),
-        "duration of the contact by law (3)",
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1)",
+    lasting = timed(
+        "(L162)", t, "duration of the contact by law (3)", duration, x_m, x_p, e, paper.alpha, beta
     )
     without = define(
         "(L163)",
@@ -93,7 +89,7 @@ POWER_LAW = ContactModel(
         lasting,
         without,
     ),
-    cells=(approach, greatest, imprint, lasting, without),
+    cells=(approach, greatest, imprint, lasting.claim, without),
     predicts={"x_m": x_m, "F_m": peak, "t": t, "x_p": x_p},
     loading=paper.law_c.value,
     unloading=paper.law_r.value.xreplace({paper.Cprime: peak, paper.x_m: x_m, paper.x_p: x_p}),

@@ -170,7 +170,7 @@ with evaluate(False):
         _by_cases("b", greatest, hertz.force.at({x: x_m}).members[-1]),
         _by_cases("c", restitution, Integer(1)),
         _by_cases("d", imprint, Integer(0)),
-        _by_cases("e", lasting, hertz.lasting_elastic(x_m)),
+        _by_cases("e", lasting, hertz.elastic_duration(x_m, over=hertz.lasts)),
     )
 
 _unloads = hertz.returned_work.at({F_m: peak, e: e_T, any_delta: delta})
