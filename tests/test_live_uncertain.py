@@ -155,7 +155,7 @@ of = "x_p"
 stated = "+-0.2 um rect"
 groups = [[1, 2], [3, 4]]
 [uncertainty.shared."gain"]
-of = "v"
+of = ["v", "ball_diameter"]
 stated = "0.2 % of reading"
 [uncertainty.correlation]
 "v, e" = "0.3"

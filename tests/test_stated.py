@@ -263,7 +263,11 @@ def test_what_is_shared(read: Read) -> None:
         '[uncertainty.shared."height datum"]\nof = "v"\nstated = "+-0.01 rect"\ngroups = [[1, 3], [2]]\n'
     )
     (shared,) = read(section).uncertainty.shared
-    assert (shared.name, shared.of, shared.groups) == ("height datum", "v", ((1, 3), (2,)))
+    assert (shared.name, [*shared.statements], shared.groups) == ("height datum", ["v"], ((1, 3), (2,)))
+    (shared,) = read(
+        section.replace('"v"', '["v", "e"]').replace("+-0.01 rect", "1 % of reading rect")
+    ).uncertainty.shared
+    assert [*shared.statements] == ["v", "e"]
 
 
 @pytest.mark.parametrize(
@@ -280,6 +284,10 @@ def test_what_is_shared(read: Read) -> None:
         *((f"digits = {wrong}", "LS435", wrong) for wrong in ("0", "3", "-1", "true", "2.0", '"2"', "[1]")),
         ("shared = 3", "LS205", "3"),
         ('[uncertainty.shared.a]\nof = "w"\nstated = "u = 1"', "LS505", '"w"'),
+        ('[uncertainty.shared.a]\nof = ["v", "w"]\nstated = "u = 1 %"', "LS505", '["v", "w"]'),
+        ('[uncertainty.shared.a]\nof = ["v", 3]\nstated = "u = 1 %"', "LS205", '["v", 3]'),
+        ('[uncertainty.shared.a]\nof = []\nstated = "u = 1 %"', "LS205", "[]"),
+        ('[uncertainty.shared.a]\nof = ["v", "e"]\nstated = "u = 1 m/s"', "LS431", "m/s"),
         ('[uncertainty.shared.a]\nof = "v"', "LS204", "uncertainty.shared.a"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "exact"', "LS431", '"exact"'),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[1], [1]]', "LS433", "[[1], [1]]"),

@@ -17,6 +17,7 @@ from loopsheet.report.column import SheetError
 from loopsheet.report.judge.sample import part
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.propagation import Spread
 
 SI = 1e-3  # mg/L in kg/m^3
 
@@ -150,6 +151,13 @@ def test_what_is_shared_or_goes_together_is_so_within_a_table(tmp_path: Path) ->
     assert drift.startswith("drift: sample 2 is in no group")
     outside = shared.replace("[[1, 4]]", "[[1, 5]]")
     assert told(two_tables.write(tmp_path / "no", report=TOML + outside)) == [("LS506", "report.toml", 16)]
+    both = shared.replace('"y_s"', '["y", "y_s"]')
+    assert told(two_tables.write(tmp_path / "rows", report=TOML + both)) == [("LS506", "report.toml", 16)]
+    every = both.partition("groups")[0]  # of all rows of both tables
+    report = Study(two_tables.write(tmp_path / "both", report=TOML + every)).computed
+    moved = {column for source in Spread(report.inputs, report.values).sources if source.name == "drift"
+             for column, _, _ in source.moves}  # fmt: skip
+    assert moved == {"y", "y_s"}
     together = '[uncertainty.correlation]\n"y, y_s" = "0.5"\n'
     folder = two_tables.write(
         tmp_path / "together", report=TOML + together, today=SAMPLES + "5,C,.7,.002\n6,D,.8,.002\n"

@@ -250,6 +250,58 @@ def test_a_shared_error_does_not_average_out(tmp_path: Path) -> None:
     assert groups == {"datum"}
 
 
+GAUGE = """
+from loopsheet import Method, let, measured, total
+
+class Gauge(Method, headline="all_gaps"):
+    "Two lengths by one gauge."
+    a = measured("mm", "first length")
+    b = measured("mm", "second length")
+    gap = let(a - b, "their difference")
+    both = let(a + b, "both")
+    area = let(a * b, "area")
+    all_gaps = let(total(gap), "all differences")
+"""
+BY_ONE_GAUGE = """
+workbook = "workbook.py"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+a = "u = 0 mm"
+b = "u = 0 mm"
+[uncertainty.shared.gain]
+of = ["a", "b"]
+stated = "u = 1 %"
+"""
+
+
+def _by_one_gauge(folder: Path, more: str = "") -> Report:
+    (folder / "workbook.py").write_text(GAUGE, encoding="utf-8")
+    (folder / "report.toml").write_text(BY_ONE_GAUGE + more, encoding="utf-8")
+    (folder / "measurements.csv").write_text(
+        "reading,a [mm],b [mm]\n1,50,30\n2,20,40\n3,10,10\n", encoding="utf-8"
+    )
+    return Study(folder).computed
+
+
+def test_one_error_of_several_columns(tmp_path: Path) -> None:
+    """A gain moves both lengths alike, by its share of each: a difference has its share of the difference."""
+    spread = _by_one_gauge(tmp_path).uncertain()
+    assert spread.u["gap"] == pytest.approx([0.2e-3, 0.2e-3, 0], rel=1e-12, abs=1e-18)
+    assert spread.u["both"] == pytest.approx([0.8e-3, 0.6e-3, 0.2e-3], rel=1e-12)
+    assert spread.u["area"] == pytest.approx(
+        [2 * 0.01 * 1500e-6, 2 * 0.01 * 800e-6, 2 * 0.01 * 1e-4], rel=1e-12
+    )
+    assert spread.u["all_gaps"] == pytest.approx([0], abs=1e-18)
+
+
+def test_one_error_of_several_columns_in_groups(tmp_path: Path) -> None:
+    report = _by_one_gauge(tmp_path, "groups = [[1, 3], [2]]\n")
+    spread = Spread(report.inputs, report.values)
+    assert [source.name for source in spread.sources] == ["gain (readings 1, 3)", "gain (reading 2)"]
+    assert report.uncertain().u["all_gaps"] == pytest.approx([0.2e-3 * 2**0.5], rel=1e-12)
+
+
 def _shared(folder: Path) -> object:
     for name in ("measurements.csv", "published.csv"):
         (folder / name).write_bytes((PAPER / name).read_bytes())

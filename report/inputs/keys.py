@@ -101,7 +101,7 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
         "correlation": Key("[uncertainty.correlation]", "Coefficients of the errors of one test."),
     },
     ("uncertainty", "shared", ANY): {
-        "of": Key('"x_p"', "The column, or the parameter.", True),
+        "of": Key('"x_p"', "The column, or the parameter; several in a list have one error together.", True),
         "stated": Key('"+-0.2 um rect"', "Its size: one error.", True),
         "groups": Key(
             "[[1, 2], [3, 4, 5]]",

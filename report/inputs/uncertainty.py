@@ -54,21 +54,19 @@ One = TypeVar("One", "Printed", "Printed | None")
 
 @dataclass(frozen=True)
 class SharedError:
-    """One error of many cells of a column: of all, or of those of a group."""
+    """One error of many cells: of all of a column or of several, or of those of a group."""
 
     name: str
     """What it is, in the words of the file."""
-    of: str
-    """The column."""
-    statement: StatedErrors
-    """Of one error; what is a share of the value is a scale error, and larger for a larger value."""
+    statements: Mapping[str, StatedErrors]
+    """By column; what is a share of the value is a scale error, and larger for a larger value."""
     groups: tuple[tuple[int, ...], ...] = ()
     """The tests of each group; none: all tests are one. A test of no group has no such error, and one that is
     left out counts for nothing."""
 
-    def error(self, printed: Printed) -> Error:
-        """What it is for a number."""
-        return self.statement.of(printed, self.name)[0]
+    def error(self, of: str, printed: Printed) -> Error:
+        """What it is for a number of a column."""
+        return self.statements[of].of(printed, self.name)[0]
 
 
 @dataclass(frozen=True)
@@ -264,28 +262,38 @@ class _Reader:
         """An error that cells share."""
         path = (SECTION, "shared", name)
         written = self.tables.keys(path, fixed(SECTION, "shared", ANY))
-        of = self.tables.text(path, "of", next(iter(self.numbers), "x_p"), required=True)
-        if of is None or of not in self.numbers:
-            if of is not None:
-                known, suggestion = listing(self.numbers), suggest(of, self.numbers)
-                at = self.toml.value(*path, "of")
-                self.findings.add("LS505", at, text=of, known=known, suggestion=suggestion)
+        if isinstance(written.get("of"), list):
+            of = [*self.tables.names(*path, "of")]
+            if not written["of"]:
+                wrong_type(self.toml, self.findings, (*path, "of"), "the names of columns", 'of = ["v", "e"]')
+        else:
+            text = self.tables.text(path, "of", next(iter(self.numbers), "x_p"), required=True)
+            of = [] if text is None else [text]
+        for unknown in (each for each in of if each not in self.numbers):
+            known, suggestion = listing(self.numbers), suggest(unknown, self.numbers)
+            at = self.toml.value(*path, "of")
+            self.findings.add("LS505", at, text=unknown, known=known, suggestion=suggestion)
             return None
-        statement = self.statement((*path, "stated"), of)
-        groups: tuple[tuple[int, ...], ...] | None = ()
-        if "groups" in written and self.rows[of] == 1:
-            known = f"no groups: {of} is one number"
-            self.findings.add("LS506", self.toml.key(*path, "groups"), name=of, text="groups", known=known)
-            groups = None
-        elif "groups" in written:
-            groups = self.groups((*path, "groups"), self.of_rows[of].rows)
-        if statement is None or groups is None:
+        statements = {each: said for each in of if (said := self.statement((*path, "stated"), each))}
+        groups = self.groups_of(path, of) if of and "groups" in written else ()
+        if len(statements) < len(of) or not of or groups is None:
             return None
-        if len(statement.parts) != 1:
+        if any(len(said.parts) != 1 for said in statements.values()):
             at, hint = self.toml.value(*path, "stated"), "each error that is shared has a table of its own"
             self.findings.add("LS431", at, text=self.tables.text(path, "stated", ""), suggestion=hint)
             return None
-        return SharedError(name, of, statement, groups)
+        return SharedError(name, statements, groups)
+
+    def groups_of(self, path: tuple[str, ...], of: Sequence[str]) -> tuple[tuple[int, ...], ...] | None:
+        """The groups in the rows of columns, which have to be the same rows; None, with a finding, if not."""
+        why = next((f"{each} is one number" for each in of if self.rows[each] == 1), "")
+        if not why and len({id(self.of_rows[each]) for each in of}) > 1:
+            why = f"{listing(of)} are of different rows"
+        if why:
+            at, known = self.toml.key(*path, "groups"), f"no groups: {why}"
+            self.findings.add("LS506", at, name=of[0], text="groups", known=known)
+            return None
+        return self.groups((*path, "groups"), self.of_rows[of[0]].rows)
 
     def groups(
         self, path: tuple[str, ...], rows: Mapping[int, Mapping[str, str]]

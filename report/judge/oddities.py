@@ -87,7 +87,7 @@ def _name(margin: Margin) -> str:
 
 def _stated(sheet: Sheet, inputs: Inputs) -> list[str]:
     """The given columns of positive quantities of whose uncertainty something is stated."""
-    shared = {each.of for each in inputs.uncertainty.shared}
+    shared = set[str]().union(*(each.statements for each in inputs.uncertainty.shared))
     return [
         name
         for name, bounds in sheet.bounds.items()
@@ -336,9 +336,10 @@ class _Oddities:
     def stated_u(self, name: str, label: tuple[int, ...], number: Printed) -> float:
         """What is stated of a number and of what shares errors with it, in SI; not what keeps to bounds."""
         shared = (
-            each.error(number)
+            each.error(name, number)
             for each in self.inputs.uncertainty.shared
-            if each.of == name and (not each.groups or any(set(label) & set(group) for group in each.groups))
+            if name in each.statements
+            if not each.groups or any(set(label) & set(group) for group in each.groups)
         )
         return math.hypot(*(error.u for error in (*(number.stated or ()), *shared) if error.law is None))
 
@@ -419,7 +420,7 @@ class _Oddities:
 
     def of_groups(self, shared: SharedError) -> Check:
         """Whether every row is in a group of an error that groups share."""
-        table = self.inputs.of(shared.of)
+        table = self.inputs.of(next(iter(shared.statements)))
         rest = [test for test in table.tests if not any(test in group for group in shared.groups)]
         row = table.row
         if not rest:

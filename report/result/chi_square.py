@@ -22,7 +22,7 @@ SIGNIFICANT = 0.05
 def tied(report: Report) -> bool:
     """Whether errors that are weighed are shared or correlated: squares are then no independent ones."""
     stated = report.inputs.uncertainty
-    of = {each.of for each in stated.shared}.union(*stated.correlations)
+    of = set[str]().union(*(each.statements for each in stated.shared), *stated.correlations)
     return not of.isdisjoint(report.sheet.weighed.values())
 
 

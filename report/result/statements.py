@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ..messages.errors import listing
 from ..quantity import Printed, behind
 from ..sheet import Given
 
@@ -71,10 +72,12 @@ def _size(report: Report, name: str, u: float) -> str:
 
 def _shared(report: Report, name: str) -> Iterator[str]:
     for each in report.inputs.uncertainty.shared:
-        if each.of == name:
+        if name in each.statements:
             groups = ", ".join("-".join(map(str, group)) for group in each.groups)
             where = f"the same in each of {groups}" if groups else "the same in all"
-            yield f"{each.name}: {each.statement.parts[0].said} ({where})"
+            others = [other for other in each.statements if other != name]
+            where += f", and in {listing(others)}" if others else ""
+            yield f"{each.name}: {each.statements[name].parts[0].said} ({where})"
 
 
 def _correlated(report: Report, name: str) -> Iterator[str]:

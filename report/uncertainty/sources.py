@@ -48,17 +48,25 @@ def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
 
 def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
     for each in inputs.uncertainty.shared:
-        if each.of not in values.sheet:
-            continue  # a parameter that the sheet of this folder does not use
-        column = values.sheet[each.of]
-        printed = inputs.printed(each.of)
-        rows = {label: row for row, label in enumerate(values.labels(column))}
-        for group in each.groups or (tuple(label[0] if label else 0 for label in rows),):
-            own = [rows[label] for label in ((test,) if test else () for test in group) if label in rows]
-            errors = {row: each.error(number) for row in own if (number := printed[row]) is not None}
-            moves = tuple((column.name, row, error.u) for row, error in errors.items())
+        # A parameter that the sheet of this folder does not use has none.
+        own = [values.sheet[name] for name in each.statements if name in values.sheet]
+        numbers = [
+            ((column.name, row), label, number)
+            for column in own
+            for row, (label, number) in enumerate(
+                zip(values.labels(column), inputs.printed(column.name), strict=True)
+            )
+            if number is not None
+        ]
+        for group in each.groups or ((),):
+            errors = {
+                cell: each.error(cell[0], number)
+                for cell, label, number in numbers
+                if not group or label[0] in group
+            }
+            moves = tuple((*cell, error.u) for cell, error in errors.items())
             named = ""
-            if each.groups and (axis := column.axis):
+            if group and own and (axis := own[0].axis):
                 named = f" ({axis.name if len(group) > 1 else axis.row} {', '.join(map(str, group))})"
             if any(u for _, _, u in moves):
                 one = next(iter(errors.values()))

@@ -32,7 +32,7 @@ def follows(report: Report) -> bool:
     told = [part.shape for each in stated.columns.values() for part in each.parts]
     numbers = [number for c in sheet.columns for number in there(report.printed(c.name))]
     told += [error.shape for number in numbers for error in number.stated or ()]
-    told += [part.shape for each in stated.shared for part in each.statement.parts]
+    told += [p.shape for each in stated.shared for said in each.statements.values() for p in said.parts]
     known = not (stated.of_readings or report.inputs.taken) and FOLLOWED.issuperset(told)
     return known and len(numbers) * how_large(sheet, report.values.layouts) <= LARGEST
 
@@ -44,10 +44,11 @@ def uncertain(report: Report) -> dict[str, Any]:
     stated = report.inputs.uncertainty
     return {
         "shared": [
-            {"called": each.name, "of": each.of, **_stated(each.statement, each.name)[0]}
+            {"called": each.name, "of": of, **_stated(said, each.name)[0]}
             | ({"groups": each.groups} if each.groups else {})
             for each in stated.shared
-            if each.of in report.sheet
+            for of, said in each.statements.items()
+            if of in report.sheet
         ],
         "correlated": [
             [one, other, r]

@@ -12,6 +12,7 @@ function* errorsIn(look) {
       for (const error of own) yield { ...error, called: own.length > 1 ? `${called}, ${error.said}` : called, moves: [[name, row, error.u]] };
     }
   }
+  const together = {};
   for (const { called, of, groups, ...error } of LIVE.shared) {
     const column = LIVE.columns[of], texts = look.texts(of), every = texts.map((_, row) => look.trace.index(of, row));
     for (const group of groups ?? [every]) {
@@ -19,9 +20,10 @@ function* errorsIn(look) {
       const found = rows.map((row) => errorsOf({ ...column, errors: [error] }, "", texts[row])[0]);
       const moves = rows.flatMap((row, n) => (found[n] ? [[of, row, found[n].u]] : []));
       const { axis } = look.trace.declared[of], named = groups ? ` (${group.length > 1 ? axis : LIVE.tables[axis].row} ${group.join(", ")})` : "";
-      if (moves.length) yield { ...error, called: called + named, moves };
+      if (moves.length) (together[called + named] ??= { ...error, called: called + named, moves: [] }).moves.push(...moves);
     }
   }
+  yield* Object.values(together);
 }
 
 // What is known of the uncertainty of a sheet's cells, computed when asked for.

@@ -108,13 +108,16 @@ _AROUND = """() => {
     ...all(".headline dd"), ...all("#published > ul > li")];
 }"""
 
+# A window that nobody sees may be drawn once a minute, or never: no frame is waited for longer than it takes.
+FRAME = "new Promise((drawn) => { requestAnimationFrame(drawn); setTimeout(drawn, 500); })"
+
 # When all that waits for the next frame has been done.
 _STATE = """async () => {
   const busy = () => document.querySelector("[aria-busy]");
-  for (let n = 0; n < 3 || busy(); n++) await new Promise(requestAnimationFrame);
+  for (let n = 0; n < 3 || busy(); n++) await FRAME;
   return [document.getElementById("main").innerHTML,
     ...Array.from(document.querySelectorAll("main input"), (input) => `${input.value} ${input.checked}`)];
-}"""
+}""".replace("FRAME", FRAME)
 
 # Put a text into the clipboard when the next thing is copied, whatever that is.
 _COPY = """(text) => addEventListener("copy", (event) => {

@@ -221,13 +221,12 @@ def test_no_browser_breaks_an_equation_and_cuts_what_is_below(live: Live) -> Non
 
 
 _READ_ON = """async () => {
-  const frame = () => new Promise(requestAnimationFrame);
   for (const one of document.querySelectorAll("main section, main h3, main .table, main figure")) {
     one.scrollIntoView();
-    await frame();
-    await frame();
+    await FRAME;
+    await FRAME;
   }
-}"""
+}""".replace("FRAME", driving.FRAME)
 
 
 def test_page_is_read_to_its_end_after_an_edit(live: Live) -> None:

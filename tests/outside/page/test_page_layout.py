@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from driving import Live
+from driving import FRAME, Live
 
 Open = Callable[..., Live]
 
@@ -185,10 +185,10 @@ _BLANK_OR_NEW = """async (selector) => {
   picture.scrollIntoView();
   for (let n = 0; n < 30; n++) {
     seen.push(...shown());
-    await new Promise(requestAnimationFrame);
+    await FRAME;
   }
   return seen;
-}"""
+}""".replace("FRAME", FRAME)
 
 
 @pytest.mark.parametrize("printed", [False, True])
