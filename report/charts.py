@@ -135,7 +135,8 @@ def with_copies(own: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
 def series_of(x: Column, y: Column) -> Series:
     """Points of two columns, or a line where they are generated."""
     if x.axis is None or x.axis != y.axis:
-        raise SheetError(f"{x.name} and {y.name} are no columns of the same rows", y.name)
+        of = ", ".join(f"{each.name} is of the {each.axis.name}" for each in (x, y) if each.axis)
+        raise SheetError(f"{x.name} and {y.name} are no columns of the same rows: {of}", y.name)
     if not x.axis.ordinals:
         return Series(x.name, y.name, y.meaning, "points", bars=True)
     if not x.axis.repeats:

@@ -30,6 +30,7 @@ from .method_lines import (
     UnknownLine,
     exact,
     in_si,
+    none_of,
     refuse_zero,
     size_of,
     spaced,
@@ -164,9 +165,8 @@ class MethodBody(dict[str, Any]):
         if len({index, size}) < 2 or not all(each.isidentifier() for each in (name, index, size)):
             raise SheetError(f"rows('{name}') needs names: letters, digits and _ make a name", name)
         if name in fixed("measurements"):
-            raise SheetError(
-                f"{name} is a key of [measurements] in report.toml: call the rows otherwise", name
-            )
+            said = "is a key of [measurements] in report.toml: call the rows otherwise"
+            raise SheetError(f"{name} {said}", name)
         axis = Axis(name, *_numbers(index, size))
         if axis.row in [one.row for one in self.axes] or name in [one.name for one in self.axes]:
             said = "rows='readings' behind (Method says what those of the class are"
@@ -199,11 +199,10 @@ class MethodBody(dict[str, Any]):
     def _of_a_group(self, formula: Any, of: Any) -> Expr:
         """A formula of a row where that belongs to a group."""
         if of in self.row_axes:
-            raise SheetError(
-                f"of={of.name} are the rows of a table: what names them is taken over them without a word"
-            )
+            said = "are the rows of a table: what names them is taken over them without a word"
+            raise SheetError(f"of={of.name} {said}")
         if of not in self.groups:
-            raise SheetError(f"of={of} is none of what groups() returned")
+            raise SheetError(none_of(of, "groups"))
         formula = self._without_groups(exact(formula))
         rows = self._rows_of(formula)
         if not set(rows) <= {self.axis, *self.groups}:
@@ -491,7 +490,7 @@ class MethodBody(dict[str, Any]):
         own = name, said.unit, said.asked or said.meaning, bounds
         rows = self.axis if said.of is None else said.of
         if rows not in self.row_axes:
-            raise SheetError(f"{name}: of={getattr(rows, 'row', rows)} is none of what rows() returned", name)
+            raise SheetError(f"{name}: {none_of(rows, 'rows')}", name)
         measured = Measured(*own, table=rows.name)
         self.inputs.append(measured if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
@@ -522,16 +521,16 @@ class MethodBody(dict[str, Any]):
         if not isinstance(said.observed, Indexed):
             raise SheetError(f"{name}: {said.observed} is no column over the rows: let(...) it be one", name)
         sought = {
-            symbol: with_unit(each, announced)
+            symbol: self._begun(with_unit(each, announced), each)
             for each, announced in self.announced.items()
             if each not in self.columns and (symbol := self[each]) in said.model.free_symbols
         }
-        sought = {symbol: self._begun(announced, str(symbol)) for symbol, announced in sought.items()}
         rows = self.axis_of(said.observed) or self.axis
         if said.of is not None and (said.of not in self.groups or rows != self.axis):
-            word = getattr(said.of, "row", said.of)
-            raise SheetError(f"{name}: of={word} is none of what groups() returned, or has no {rows.name}")
+            raise SheetError(f"{name}: {none_of(said.of, 'groups', f', or has no {rows.name}')}", name)
         for formula in (said.model, *said.u.values()):
+            if isinstance(formula, Expr) and rows in self.row_axes:
+                self.axis_of(said.observed, formula)  # which refuses the rows of two tables
             if isinstance(formula, Expr) and rows in self.groups:
                 self._refuse_rows(name, formula, rows)
             if isinstance(formula, Expr) and self.is_grouped(formula, said.observed):

@@ -28,6 +28,7 @@ __all__ = [
     "UnknownLine",
     "exact",
     "in_si",
+    "none_of",
     "refuse_zero",
     "size_of",
     "spaced",
@@ -149,6 +150,13 @@ class FitLine:
     label: str
     figures: bool
     of: Any = None
+
+
+def none_of(of: Any, word: str, more: str = "") -> str:
+    """What is said of ``of=`` where no `word`, such as ``rows``, returned it; texts are seen."""
+    said = f"of={of!r}" if isinstance(of, str) else f"of={getattr(of, 'row', of)}"
+    quotes = f": write of={of}, without quotes" if isinstance(of, str) else ""
+    return f"{said} is none of what {word}() returned{more}{quotes}"
 
 
 def size_of(name: str, unit: str) -> ParsedUnit:

@@ -91,7 +91,13 @@ def workbook_of(
     given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
     columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
     row_tables = [_table_of(axis, body, columns_of) for axis in body.row_axes]
-    several = tuple(one for one in row_tables if any(each.table == one.name for each in columns_of))
+    used_rows = {one.table for one in columns_of}
+    for axis in body.row_axes[1:]:
+        if axis.name not in used_rows:
+            of = next((each for each, value in body.items() if value is axis), axis.name)
+            said = f"what stands in their table says so, measured(..., of={of})"
+            raise SheetError(f"nothing is measured of the {axis.name}: {said}", of)
+    several = tuple(one for one in row_tables if one.name in used_rows)
     if len(several) < 2:  # the only one needs no name
         columns_of = tuple(replace(each, table="") for each in columns_of)
     only = several[0] if several else row_tables[0]

@@ -189,8 +189,10 @@ def _hint(error: BaseException) -> str:
             return ""
         case NameError(name=name) if name in (*FUNCTIONS, "sqrt", "pi"):
             return f"write above: from sympy import {name}"
-        case NameError():
-            return "a name stands for its cell from the line on where it is declared"
+        case NameError(name=name):
+            said = "a name stands for its cell from the line on where it is declared"
+            found = f"; what a root or a fit finds is announced above it, {name} = unknown(...)"
+            return said if not name or "did you mean" in str(error) else said + found
         case ImportError(name="loopsheet"):
             return f"there are {', '.join(_words())}; max, min and sum are Python's, functions are sympy's"
         case ImportError():

@@ -127,7 +127,11 @@ def test_many_groups_are_not_told_apart_in_a_legend(tmp_path: Path) -> None:
             "a + x ** b",
             "not linear: of each catalyst there are fits of linear models",
         ),
-        ("of=catalyst", "of='catalyst'", "of=catalyst is none of what groups() returned"),
+        (
+            "of=catalyst",
+            "of='catalyst'",
+            "of='catalyst' is none of what groups() returned, or has no readings: write of=catalyst, without",
+        ),
         ("fit(y, a", "fit(mean(y, of=catalyst), a", "is no column over the rows"),
         ("a + b * x", "a + b * mean(x, of=catalyst)", "is of rows in groups, which no fit takes"),
         (FIT, LEVEL + "fit(level, a + b * x)", "instead: name a let(mean(x, of=catalyst), ...)"),

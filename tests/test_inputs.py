@@ -507,12 +507,20 @@ def test_published_values_against_the_sheet(row: str, code: str | None, read: Re
 def test_with_an_unknown_workbook_the_rest_is_still_looked_at(findings: Findings) -> None:
     toml = WITH_PUBLISHED.replace("soft_impact", "soft")
     csv = "test,v [m/s],what\n1,2\n1,2,3\n1,2,3\n"
-    assert findings(toml, csv, PUBLISHED + "T,a,x,1,1,,\n") == [
+    assert findings(toml, csv, PUBLISHED + "T,a,1x,1,1,,\n") == [
         "LS306 measurements.csv:2:4+1",
         "LS311 measurements.csv:4:1+1",
-        "LS501 published.csv:2:5+1",
+        "LS501 published.csv:2:5+2",
         "LS207 report.toml:2:12+6",
     ]
+
+
+def test_a_word_of_a_table_that_cannot_be_read_is_no_mistake(findings: Findings) -> None:
+    """Whether there is such a row is asked once the table can be read; what looks like a date is told now."""
+    csv = "test,lot,v [m/s]\n1,A-1\n"
+    values = "T,alpha,A-1,1,1,,\nT,alpha,oil A,1,1,,\nT,alpha,1to2,1,1,,\n"
+    found = findings(WITH_PUBLISHED, csv, PUBLISHED + values)
+    assert [each for each in found if "published" in each] == ["LS501 published.csv:4:9+4"]
 
 
 def test_what_a_workbook_finds_is_shown_with_the_rest(read: Reader) -> None:

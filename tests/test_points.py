@@ -126,7 +126,7 @@ def test_figures_have_them_and_no_table_does(folder: Path) -> None:
         ("a = points(0, 1, 'one', number=1)", "number is a whole number from 2 to 1000, not 1"),
         ("a = points(0, top, 'another kind', 's')", "but the formula gives"),
         ("points(0, 1, 'nameless')", "'nameless' has no name"),
-        ("plot(x, F, (h, F))", "h and F are no columns of the same rows"),
+        ("plot(x, F, (h, F))", "h and F are no columns of the same rows: h is of the "),
         ("a = let(h * z, 'both')", "one formula names h_points or z_points"),
         ("a = let(x * z, 'both')", "one formula names readings or z_points"),
     ],

@@ -257,7 +257,17 @@ def test_a_column_in_the_wrong_table_is_told_where_it_belongs(
         ),
         ("x = let(mean(y_s / y), 'ratio')", "rows of two tables"),
         ("d = measured('1', 'd', of=y)", "of=y[k] is none of what rows() returned"),
+        (
+            "d = measured('1', 'd', of='samples')",
+            "d: of='samples' is none of what rows() returned: write of=samples",
+        ),
         ("x = let(mean(y_s, of=samples), 'mean')", "without a word"),
+        ("a = unknown('a'); line = fit(y, a * y_s)", "rows of two tables: take a mean"),
+        ("plot(y, y_s)", "no columns of the same rows: y is of the standards, y_s is of the samples"),
+        (
+            "more = rows('blanks')",
+            "nothing is measured of the blanks: what stands in their table says so, measured(..., of=more)",
+        ),
         ("more = rows('samples')", "samples are rows already"),
         ("more = rows('standard')", "standard are rows already"),
         ("more = rows('file')", "is a key of [measurements]"),

@@ -275,7 +275,8 @@ class _Reader:
         if self.workbook and measurements is not None and "uncertainty" in toml.data:
             uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
         computable = not self.findings.found
-        published = self.published({word for table in measurements or () for word in table.every_word})
+        words = None if measurements is None else {each for own in measurements for each in own.every_word}
+        published = self.published(words)
         expected = read_expected(self.tables)
         limits = read_limits(self.tables, self.workbook.margins if self.workbook else {})
         cards = read_cards(self.tables)
@@ -567,7 +568,7 @@ class _Reader:
             return name, tests.index(index)
         return None
 
-    def published(self, words: Collection[str]) -> tuple[PublishedValue, ...]:
+    def published(self, words: Collection[str] | None) -> tuple[PublishedValue, ...]:
         if "published" not in self.toml.data:
             return ()
         table = self.tables.keys(("published",))

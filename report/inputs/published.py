@@ -109,7 +109,7 @@ class PublishedValue:
 
 
 def read_published(
-    source: Source, findings: Findings, words: Collection[str] = ()
+    source: Source, findings: Findings, words: Collection[str] | None = ()
 ) -> tuple[PublishedValue, ...]:
     """Read published.csv, as far as it can be checked without the sheet.
 
@@ -119,8 +119,9 @@ def read_published(
         The file.
     findings : Findings
         Where findings go.
-    words : collection of str
-        Those of the table of measurements: one may stand for a row.
+    words : collection of str or None
+        Those of the table of measurements: one may stand for a row. Where that could not be read, None: then
+        what begins with a letter may be one.
     """
     table = read_table(source, COLUMNS, findings)
     if table is None:
@@ -146,7 +147,7 @@ def read_published(
 
 
 def _value(
-    table: CsvTable, fields: Mapping[str, Field], findings: Findings, known: Collection[str]
+    table: CsvTable, fields: Mapping[str, Field], findings: Findings, known: Collection[str] | None
 ) -> PublishedValue:
     unread = set()
     allowed = {"source": "where it is printed, such as Table 2", "cell": "the name of a cell, such as alpha"}
@@ -159,7 +160,8 @@ def _value(
         findings.add("LS509", table.at(fields["cell"]), text=fields["cell"].text, known=FORMS)
         unread.add("cell")
     index = fields["index"]
-    is_word = index.text in known and not _INDEX.fullmatch(index.text)
+    may_be = index.text[:1].isalpha() if known is None else index.text in known
+    is_word = may_be and not _INDEX.fullmatch(index.text)
     if index.text and not is_word and not _INDEX.fullmatch(index.text):
         hint = _AS_DATE if _DATE.search(index.text) else _AS_WORD.format(fields["cell"].text)
         findings.add("LS501", table.at(index), text=index.text, suggestion=hint)
