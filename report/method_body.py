@@ -503,6 +503,8 @@ class MethodBody(dict[str, Any]):
             words |= {"meaning": own_word.meaning, "latex": own_word.latex, "positive": own_word.positive}
             words |= {"display": f"like {name}"}
         column = Column(name, axis, rule, **words)
+        if own_word:
+            self.places[-1].setdefault(own_word.symbol, column.cell)
         if said.optional or said.otherwise is not None:
             self.optional.names.append(name)
         if said.otherwise is not None:
@@ -511,7 +513,7 @@ class MethodBody(dict[str, Any]):
 
     def free_number(self) -> str:
         """The next number of an equation."""
-        every = Ledger(tuple(self.entries)).equations()
+        every = Ledger((*(self.ledger.entries if self.ledger else ()), *self.entries)).equations()
         taken = dict.fromkeys(equation.number for equation in every if not equation.own)
         numbers = map("({})".format, itertools.count(len(taken) + 1))
         return next(number for number in numbers if number not in taken)

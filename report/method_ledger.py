@@ -1,7 +1,7 @@
 """Words of a method that takes its equations from a ledger, where each stands once, with its proof.
 
 class Drop(Method, ledger=LEDGER, rows="tests", size="n_tests"):
-    v = measured(VOCABULARY["v"], positive=True)
+    v = measured(VOCABULARY["v"], "impact speed", positive=True)
     first, second = pairs(index="p", size="n_pairs")
     with standing({V[1]: first(v), V[2]: second(v)}):
         x_m1 = by(eq12b, "approach of the first test")
@@ -93,7 +93,9 @@ class _By(TakenLine):
             raise SheetError(f"{name}: {said}", name)
         if name in body.announced:
             cell, where = body[name], body.places.merged
-            of = next((old for old, new in where.items() if new == cell), None)
+            own = _determined(self.equation)
+            own = own if str(own) == name else None  # which stands for what is called so
+            of = next((old for old, new in where.items() if new == cell), own)
         else:
             of = _determined(self.equation)
         column = self._column(body, name, of)

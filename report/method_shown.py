@@ -27,7 +27,8 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
         Columns over the rows.
     *curves : Expr
         Further columns: what is measured as points, what is computed as a line in the order of x; single
-        numbers, each across all of it; or pairs ``(x, y)`` that have points, or a line, of their own.
+        numbers, each across all of it; or pairs ``(x, y)``, of what :func:`sketch` made, too, that have
+        points, or a line, of their own.
     caption : str
         Below the figure; what its axes are, without.
     log : str
@@ -36,7 +37,8 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     body = current()
 
     def named(*cells: Any) -> list[Column]:
-        return [body.column(name_of(cell)) for cell in cells]
+        sketched = {column.name: column for column in body.drawn}
+        return [sketched.get(name) or body.column(name) for name in map(name_of, cells)]
 
     across, up = named(x, y)
     for each in (across, up):

@@ -12,9 +12,11 @@ from loopsheet import (
     by,
     expected,
     given,
+    let,
     measured,
     numbered,
     pairs,
+    plot,
     sketch,
     standing,
     uncertainty,
@@ -122,6 +124,47 @@ def test_what_is_computed_is_what_the_ledger_says() -> None:
     assert values.scalar("g_mean") == pytest.approx(sum(g_k) / 2, rel=1e-14)
     assert values.scalar("a") == pytest.approx((2 * 0.3**3 / 3) ** (1 / 3), rel=1e-14)
     assert values.scalar("b") == pytest.approx((2 * 0.3**3 / 3) ** (1 / 3), rel=1e-12)
+
+
+AIR = 2 * h / t**2 + g**2 * t**2 / d
+DRAG = Equation("(4)", (g, AIR), "drag", Kind.ASSUMPTION, "drag of air", defines=g)
+
+
+class Own(Method, ledger=Ledger((DRAG, BALL), vocabulary=WORDS), rows="drops"):
+    """Free fall with formulas of its own."""
+
+    t = measured(T, "time", positive=True)
+    h = measured(H, "height", positive=True)
+    d = given("m", "diameter of the ball", positive=True)
+    speed = let(2 * h / t, "speed at the end", "m/s")
+    g = unknown(of=t)
+    g = by(DRAG, step=AIR, start=9)
+    each = sketch(3, "points of each path")
+    s = numbered("places", each, of=h, index="place", size="places_all", step="s")
+    deep, after = sketch(h * s / each, "depth", "m"), sketch(t * s / each, "time", "s")
+    plot(t, h, (after, deep))
+
+
+def test_a_word_stands_for_its_column_and_what_is_announced_for_its_symbol() -> None:
+    sheet = Own.workbook.sheet(frozenset({"d"}))
+    t_k, h_k, g_k = (sheet[name].cell for name in "thg")
+    rule = sheet["g"].rule
+    assert isinstance(rule, Iterated)
+    assert rule.step == 2 * h_k / t_k**2 + g_k**2 * t_k**2 / sheet["d"].cell
+    assert sheet["g"].unit == "m/s^2"
+
+
+def test_formulas_of_its_own_are_numbered_behind_those_of_the_ledger() -> None:
+    assert Own.workbook.sheet(frozenset({"d"}))["speed"].source == "(5)"
+    assert len({equation.number for equation in Own.workbook.ledger().equations()}) == 3
+
+
+def test_a_sketch_is_drawn_beside_points() -> None:
+    (chart,) = Own.workbook.charts
+    assert [(each.x, each.y, each.each) for each in chart.series] == [
+        ("t", "h", False),
+        ("after", "deep", True),
+    ]
 
 
 def test_charts_alone_have_sketches() -> None:
