@@ -14,10 +14,14 @@ import loopsheet
 from loopsheet.report import build, method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.inputs.inputs import Inputs
 from loopsheet.report.judge.sample import part
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.quantity import there
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
+from loopsheet.report.views import live_files
 
 SI = 1e-3  # mg/L in kg/m^3
 
@@ -301,3 +305,73 @@ def test_one_further_table_alone_is_written_as_the_only_one() -> None:
     assert (workbook.row_tables[0].place, workbook.row) == (("measurements",), "sample")
     assert C.size == Y.size
     assert STANDARDS
+
+
+def numbers(inputs: Inputs) -> dict[str, list[tuple[str, float]]]:
+    """What is measured, as it stands, with its uncertainty."""
+    return {name: [(each.text, each.u) for each in there(column)] for name, column in inputs.measured.items()}
+
+
+def saved_by_the_page(folder: Path, into: Path) -> Path:
+    """The files as Save gives them after no edit."""
+    report = Study(folder).computed
+    page = live_files.given(report)
+    files = {
+        each["file"]: (folder / table.file).read_text(encoding="utf-8")
+        for each, table in zip(page["tables"].values(), report.inputs.tables, strict=True)
+    }
+    pieces = (
+        piece if isinstance(piece, str) else piece.get("file", piece.get("parameter"))
+        for piece in page["toml"]
+    )
+    names = [*files, "report.toml", *page["files"]]
+    assert len(names) == len({name.casefold() for name in names})
+    for name, text in (files | {"report.toml": "".join(pieces)} | page["files"]).items():
+        into.mkdir(exist_ok=True)
+        (into / name).write_text(text, encoding="utf-8")
+    return into
+
+
+SPELLED = {
+    "plainly": TOML,
+    "with dots": TOML.replace("[measurements.samples]\nfile", "[measurements]\nsamples.file"),
+    "as a table in a line": re.sub(
+        r"\[measurements\.(\w+)\]\n(.*)", r"measurements.\1 = { \2 }", TOML.replace("\n\n", "\n")
+    ),
+    "in quotes": TOML.replace("[measurements.samples]\nfile", "[measurements.'samples']\n\"file\""),
+    "in three quotes": TOML.replace('"samples/today.csv"', '"""samples/today.csv"""'),
+    "with an escape": TOML.replace("samples/today", "samples\\u002ftoday"),
+}
+
+
+@pytest.mark.parametrize("spelled", SPELLED)
+def test_a_file_in_a_folder_is_saved_beside_the_others_and_named_so(tmp_path: Path, spelled: str) -> None:
+    issued = two_tables.write(tmp_path / "issued", report=SPELLED[spelled])
+    again = Study(saved_by_the_page(issued, tmp_path / "saved")).inputs
+    assert [table.file for table in again.tables] == ["standards.csv", "samples-today.csv"]
+    assert numbers(again) == numbers(Study(issued).inputs)
+
+
+def test_no_saved_file_has_the_name_of_another(tmp_path: Path) -> None:
+    """A folder may have a file whose name is what that of another becomes, which would be lost."""
+    issued = two_tables.write(tmp_path / "issued", report=TOML.replace("standards.csv", "Samples-today.csv"))
+    (issued / "standards.csv").rename(issued / "Samples-today.csv")
+    again = Study(saved_by_the_page(issued, tmp_path / "saved")).inputs
+    assert [table.file for table in again.tables] == ["Samples-today.csv", "_samples-today.csv"]
+    assert numbers(again) == numbers(Study(issued).inputs)
+
+
+def test_a_saved_table_of_draws_is_named_as_it_is_saved(tmp_path: Path) -> None:
+    (tmp_path / "issued" / "balance").mkdir(parents=True)
+    draws = "".join(f"{8.366 + n / 1e5:.5f}\n" for n in range(-60, 61))
+    (tmp_path / "issued" / "balance" / "mass.csv").write_text(f"ball_mass [g]\n{draws}")
+    for name in ("measurements.csv", "report.toml"):
+        (tmp_path / "issued" / name).write_bytes((PAPER / name).read_bytes())
+    toml = (
+        'workbook = "soft_impact"\n[parameters]\nball_mass = "8.366 g, samples = balance/mass.csv"\n'
+        '[measurements]\nfile = "measurements.csv"\n'
+    )
+    (tmp_path / "issued" / "report.toml").write_text(toml)
+    pieces = live_files.given(Study(tmp_path / "issued").computed)["toml"]
+    text = "".join(each if isinstance(each, str) else each.get("file", "") for each in pieces)
+    assert ' g, samples = balance-mass.csv"\n' in text

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -85,6 +87,9 @@ class Inputs:
     """The values to referee."""
     files: dict[str, bytes]
     """The bytes of every file that was read, by its name relative to the folder."""
+    named: tuple[tuple[str, str, str], ...] = ()
+    """Where report.toml names these files: ``file:line:column``, what stands there (a whole string, with its
+    quotes, or a part of one), and which file that is."""
     free_at: dict[str, Location] = field(default_factory=dict)
     """The columns that the publication does not print, with the place that says so."""
     expected: tuple[Expectation, ...] = ()
@@ -294,6 +299,7 @@ class _Reader:
             measurements,
             tuple(value for value in published if value.about is None),
             self.files,
+            tuple(_naming(toml, self.files)),
             self.free,
             expected,
             errata,
@@ -614,3 +620,17 @@ def _with(said: Stated, test: LeftOut, units: Mapping[str, str]) -> LeftOut:
             numbers[name] = (number,)
     found = {name: number.stated for name, (number,) in said.of(numbers).items()}
     return replace(test, stated={**test.stated, **found})
+
+
+def _naming(toml: TomlFile, files: Collection[str]) -> Iterator[tuple[str, str, str]]:
+    """The places that name files, however TOML spells them: strings, and tables of draws in strings."""
+    for path, start, end in toml.strings:
+        text = toml.source.text[start:end]
+        if path and path[-1] in {"file", "from"}:
+            found = [(start, text, tomllib.loads(f"it = {text}")["it"].strip())]
+        else:
+            draws = re.finditer(r"\bsamples\s*=\s*([^;\"']*[^;\"'\s])", text)
+            found = [(start + each.start(1), each[1], each[1]) for each in draws]
+        for begin, written, name in found:
+            if (name := Path(name).as_posix()) in files:
+                yield toml.source.trace(begin), written, name

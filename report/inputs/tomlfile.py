@@ -51,7 +51,9 @@ class TomlFile:
         self.source = source
         self.data = data
         self._marks: dict[Path, _Mark] = {}
-        _Locator(source.text, self._marks).document()
+        self.strings: list[tuple[Path | None, int, int]] = []
+        """Each with its quotes: the keys that lead to it (None in a list), where it begins, where it ends."""
+        _Locator(source.text, self._marks, self.strings).document()
 
     def key(self, *path: str) -> Location:
         """Return the place of a key, or of the nearest table that holds it."""
@@ -122,9 +124,12 @@ def _advice(at: Location) -> str:
 class _Locator:
     """Walks through valid TOML and notes where keys and values begin and end."""
 
-    def __init__(self, text: str, marks: dict[Path, _Mark]) -> None:
+    def __init__(
+        self, text: str, marks: dict[Path, _Mark], strings: list[tuple[Path | None, int, int]]
+    ) -> None:
         self.text = text
         self.marks = marks
+        self.strings = strings
         self.position = 0
 
     def document(self) -> None:
@@ -184,6 +189,7 @@ class _Locator:
         text = self.text
         string = _STRING.match(text, self.position)
         if string:
+            self.strings.append((path, *string.span()))
             self.position = string.end()
         elif text[self.position] in "[{":
             closing = {"[": "]", "{": "}"}[text[self.position]]

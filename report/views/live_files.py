@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from ..quantity import Printed, behind
@@ -19,22 +19,23 @@ def given(report: Report) -> dict[str, Any]:
     """What was given, as it was printed, and all that is needed to save it as the files that it came from."""
     inputs, sheet = report.inputs, report.sheet
     given = [axis for axis in sheet.axes if axis.is_given]
+    saved = _saved(inputs.files)
     own = {"report.toml", *(inputs.on(axis.name).file for axis in given)}
     return {
-        "tables": {axis.name: _table_of(report, axis) for axis in given},
+        "tables": {axis.name: _table_of(report, axis, saved) for axis in given},
         "parameters": {name: number.text for name, number in inputs.parameters.items() if name in sheet},
         **({"groups": groups, "words": _words(report)} if (groups := _groups(report)) else {}),
-        "toml": list(_toml(report)),
+        "toml": list(_toml(report, saved)),
         # What goes with them as it is.
         "files": {
-            _saved(name): data.decode("utf-8", "replace")
+            saved[name]: data.decode("utf-8", "replace")
             for name, data in inputs.files.items()
             if name not in own
         },
     }
 
 
-def _table_of(report: Report, axis: Axis) -> dict[str, Any]:
+def _table_of(report: Report, axis: Axis, saved: Mapping[str, str]) -> dict[str, Any]:
     """A table of rows, what it is called when it is saved, and what a row is called."""
     table = report.inputs.on(axis.name)
     return {
@@ -44,7 +45,7 @@ def _table_of(report: Report, axis: Axis) -> dict[str, Any]:
         "heads": table.heads or {"test": axis.row},
         "texts": _texts(report, axis),
         "naming": [*table.naming],
-        "file": _saved(table.file),
+        "file": saved.get(table.file, table.file),
     }
 
 
@@ -92,9 +93,15 @@ def _raw(report: Report) -> str:
     return report.inputs.files.get("report.toml", b"").decode("utf-8-sig", "replace")
 
 
-def _saved(name: str) -> str:
-    """What a file is called that a browser saves: it makes no folders."""
-    return name.replace("/", "-")
+def _saved(names: Iterable[str]) -> dict[str, str]:
+    """What files are called that a browser saves, which makes no folders; each has a name of its own."""
+    saved: dict[str, str] = {}
+    for name in sorted(names, key=lambda name: (name.count("/"), name)):
+        own = name.replace("/", "-")
+        while own.casefold() in map(str.casefold, saved.values()):
+            own = f"_{own}"
+        saved[name] = own
+    return saved
 
 
 def _texts(report: Report, axis: Axis) -> dict[int, dict[str, str]]:
@@ -144,7 +151,7 @@ def _line(text: str, name: str) -> tuple[int, str]:
     return table.start() if table else len(text), f"parameters.{name}"
 
 
-def _toml(report: Report) -> Iterator[str | dict[str, str]]:
+def _toml(report: Report, renamed: Mapping[str, str]) -> Iterator[str | dict[str, str]]:
     """report.toml in pieces: text as it stands, and between it the numbers that may be edited.
 
     A parameter that is not in the file has its piece behind the head of the table.
@@ -169,14 +176,12 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
             # In parentheses it counts units of the last digit, which an edit may move.
             if concise := re.match(r"\([0-9]+\)(?P<behind>[^\"'\n]*)", text[end:]):
                 pieces.append((end, end + concise.end(), concise["behind"] + _stated(number)))
-    own = (r"[ \t]*\.[ \t]*".join(each.table.place) for each in report.inputs.tables)
-    for name in (*own, "published"):
-        table = _table(text, name)
-        named = re.search(r"""^[ \t]*file[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*)\1""", table, re.MULTILINE)
-        if named is not None and "/" in named["name"]:
-            start = text.index(table) + named.start("name")
-            saved = _saved(Path(named["name"].strip()).as_posix())
-            pieces.append((start, start + len(named["name"]), {"file": saved}))
+    for where, written, name in report.inputs.named:
+        if renamed[name] != name:
+            line, column = map(int, where.split(":")[1:])
+            start, own = text.index(written, starts[line - 1] + column - 1), renamed[name]
+            quoted = json.dumps(own, ensure_ascii=False) if written[0] in "\"'" else own
+            pieces.append((start, start + len(written), {"file": quoted}))
     pieces += _taken(report, text)
     done = 0
     for start, end, piece in sorted(pieces, key=lambda piece: piece[:2]):
@@ -187,7 +192,7 @@ def _toml(report: Report) -> Iterator[str | dict[str, str]]:
 
 
 def _taken(report: Report, text: str) -> Iterator[tuple[int, int, str | dict[str, str]]]:
-    """The places where a mark makes a remark of what is said of a taken number, and the files named there."""
+    """The places where a mark makes a remark of what is said of a taken number."""
     for name in report.inputs.taken:
         table = "parameters"
         if name in report.inputs.measured:
@@ -198,11 +203,6 @@ def _taken(report: Report, text: str) -> Iterator[tuple[int, int, str | dict[str
             if own or re.match(key, line.group()):
                 start = text.index(whole) + line.start()
                 yield start, start, {"taken": name}
-                if file := re.search(
-                    r"""\bfrom[ \t]*=[ \t]*(["'])(?P<name>[^"'\n]*/[^"'\n]*)\1""", line.group()
-                ):
-                    at = [start + end for end in file.span("name")]
-                    yield at[0], at[1], {"file": _saved(Path(file["name"]).as_posix())}
 
 
 def _table(text: str, name: str) -> str:
