@@ -143,8 +143,8 @@ function restore() {
 const looseCells = () => all("main [data-cell]").filter((cell) => !cell.closest("table:not(.list)"));
 
 function refocus(element) {
-  const { cell, index, use } = element.dataset;
-  const same = cell ? document.querySelector(`main [data-cell="${CSS.escape(cell)}"][data-index="${CSS.escape(index)}"]`) : document.querySelector(`[data-use="${CSS.escape(use)}"]`);
+  const { cell, index } = element.dataset; // rows of two tables may have one number
+  const same = document.querySelector(cell ? `main [data-cell="${CSS.escape(cell)}"][data-index="${CSS.escape(index)}"]` : `[aria-label="${CSS.escape(element.ariaLabel)}"]`);
   if (same) enter(same);
 }
 

@@ -107,3 +107,12 @@ def test_edits_of_both_last(live: Live, tmp_path: Path) -> None:
     assert live.text("live-note") == "Your edits of last time are here again."
     assert (live.cell("y_s", "2").text, live.cell("y", "2").text) == ("0.553", "0.213")
     assert live.text("live-banner").startswith("Edited: 2 inputs differ")
+
+
+def test_a_row_that_is_gone_does_not_leave_the_focus_to_the_other_table(live: Live) -> None:
+    samples = live.page.locator("table:has(input[data-cell=y_s])")
+    live.page.get_by_role("button", name="Add a sample").click()
+    samples.locator('[data-use="5"]').focus()  # there is a standard 5, too
+    live.press("Control+z", "Space")
+    assert live.text("live-banner") == ""
+    assert live.page.locator('[data-use="5"]').is_checked()
