@@ -11,6 +11,7 @@ from ..cells.values import Values
 from ..inputs.inputs import Inputs
 from ..inputs.taken import Origin, Taken, TakenError
 from ..laws import Samples
+from ..quantity import Printed
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Given
 
@@ -50,23 +51,18 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
     for each in inputs.uncertainty.shared:
         # A parameter that the sheet of this folder does not use has none.
         own = [values.sheet[name] for name in each.statements if name in values.sheet]
-        numbers = [
-            ((column.name, row), label, number)
-            for column in own
-            for row, (label, number) in enumerate(
-                zip(values.labels(column), inputs.printed(column.name), strict=True)
-            )
-            if number is not None
-        ]
-        for group in each.groups or ((),):
-            errors = {
-                cell: each.error(cell[0], number)
-                for cell, label, number in numbers
-                if not group or label[0] in group
-            }
+        of_test: dict[int, list[tuple[tuple[str, int], Printed]]] = {}
+        for column in own:
+            labels, printed = values.labels(column), inputs.printed(column.name)
+            for row, (label, number) in enumerate(zip(labels, printed, strict=True)):
+                if number is not None:
+                    of_test.setdefault(label[0] if label else 0, []).append(((column.name, row), number))
+        for group in each.groups or (tuple(of_test),):
+            every = (one for test in group for one in of_test.get(test, ()))
+            errors = {cell: each.error(cell[0], number) for cell, number in every}
             moves = tuple((*cell, error.u) for cell, error in errors.items())
             named = ""
-            if group and own and (axis := own[0].axis):
+            if each.groups and own and (axis := own[0].axis):
                 named = f" ({axis.name if len(group) > 1 else axis.row} {', '.join(map(str, group))})"
             if any(u for _, _, u in moves):
                 one = next(iter(errors.values()))
