@@ -101,7 +101,12 @@ def test_end_tags_that_are_left_out_are_read_as_if_they_stood_there(
     whole = html.render(report, {figure.name: SVG for figure in report.workbook.figures})
     assert len(page) < len(whole) - 5000
     parser = html5lib.HTMLParser(tree=html5lib.getTreeBuilder("etree"))
-    assert ET.tostring(parser.parse(whole)) == ET.tostring(tree)
+    assert _between_blocks(parser.parse(whole)) == _between_blocks(tree)
+
+
+def _between_blocks(tree: ET.Element) -> bytes:
+    """A tree without the line ends between paragraphs and between items of a list, which nobody sees."""
+    return re.sub(rb"(</html:(?:p|li)>)\n", rb"\1", ET.tostring(tree))
 
 
 def _elements(tree: ET.Element, name: str) -> list[ET.Element]:
