@@ -15,6 +15,7 @@ from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
 from ..derivations.vocabulary import Quantity
 from .column import Limit, SheetError
+from .document.names import amiss
 from .quantity import Bounds, behind
 
 __all__ = [
@@ -63,6 +64,8 @@ class Declaration:
             raise SheetError(
                 f"{self.unit!r} is no unit, and {self.meaning!r}, the meaning, is: have they changed places?"
             )
+        if wrong := amiss(latex := self.column.get("latex", "")):
+            raise SheetError(f"latex={latex!r} {wrong}")
 
 
 class TakenLine(Declaration):

@@ -68,6 +68,15 @@ q = root(q * x, y, "nothing", low=3, high=2)
 """,
         {1: "have they changed places?", 5: "but the formula gives", 7: "low is not below high"},
     ),
+    "LaTeX that TeX does not take": (
+        """\
+a = let(2*x, "twice", latex="a_{2")
+b = let(3*x, "thrice", latex="50 % of b")
+c = let(4*x, "four times", latex="c_4_1")
+d = let(5*x, "five times", latex="d_5%s")
+""",
+        {0: "a brace without its other", 1: "means another thing in LaTeX", 2: "two scripts in one place"},
+    ),
     "a line that Python refuses": (
         """\
 a = let(log(x), "logarithm of a length")
