@@ -66,7 +66,7 @@ __all__ = [
 @told_together
 def given(
     unit: str | Quantity,
-    meaning: str,
+    meaning: str = "",
     *,
     low: float | None = None,
     high: float | None = None,
@@ -89,7 +89,7 @@ def given(
         Formulas have it in SI, and an angle in radians. A word of a ledger has unit, meaning and LaTeX; it is
         shown as it is typed.
     meaning : str
-        What it is, for messages and captions.
+        What it is, for messages and captions; a word of a ledger says it.
     low, high : float, optional
         The least and the largest value that is allowed, in that unit.
     positive : bool
@@ -147,7 +147,7 @@ def constant(name: str, *, latex: str = "") -> Any:
 @told_together
 def measured(
     unit: str | Quantity,
-    meaning: str,
+    meaning: str = "",
     *,
     low: float | None = None,
     high: float | None = None,

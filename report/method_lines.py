@@ -98,8 +98,11 @@ class InputLine(Declaration):
     def __post_init__(self) -> None:
         if isinstance(self.unit, Quantity):
             object.__setattr__(self, "quantity", self.unit)
+            object.__setattr__(self, "meaning", self.meaning or self.unit.meaning)
             object.__setattr__(self, "unit", self.unit.unit)
         super().__post_init__()
+        if not self.meaning.strip():
+            raise SheetError(f"say what it is, behind the unit: {self.unit!r}, 'length of the rod'")
         if not self.unit.strip():
             object.__setattr__(self, "unit", "1")
         default: Any = self.default

@@ -77,6 +77,12 @@ d = let(5*x, "five times", latex="d_5%s")
 """,
         {0: "a brace without its other", 1: "means another thing in LaTeX", 2: "two scripts in one place"},
     ),
+    "nothing that says what it is": (
+        """\
+z = measured("mm")
+""",
+        {0: "say what it is, behind the unit: 'mm', 'length of the rod'"},
+    ),
     "a line that Python refuses": (
         """\
 a = let(log(x), "logarithm of a length")

@@ -134,7 +134,7 @@ class Own(Method, ledger=Ledger((DRAG, BALL), vocabulary=WORDS), rows="drops"):
     """Free fall with formulas of its own."""
 
     t = measured(T, "time", positive=True)
-    h = measured(H, "height", positive=True)
+    h = measured(WORDS["h"], positive=True)
     d = given("m", "diameter of the ball", positive=True)
     speed = let(2 * h / t, "speed at the end", "m/s")
     g = unknown(of=t)
@@ -152,6 +152,10 @@ def test_a_word_stands_for_its_column_and_what_is_announced_for_its_symbol() -> 
     assert isinstance(rule, Iterated)
     assert rule.step == 2 * h_k / t_k**2 + g_k**2 * t_k**2 / sheet["d"].cell
     assert sheet["g"].unit == "m/s^2"
+
+
+def test_a_word_says_what_it_is() -> None:
+    assert [one.meaning for one in Own.workbook.measured] == ["time", "height"]
 
 
 def test_formulas_of_its_own_are_numbered_behind_those_of_the_ledger() -> None:

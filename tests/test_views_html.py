@@ -55,6 +55,13 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Report:
     return Study(folder).computed
 
 
+def test_tables_without_a_number_are_given_none_that_a_table_has(report: Report) -> None:
+    first, second, third, *_ = (replace(spec, number="") for spec in report.workbook.tables)
+    tables = first, replace(second, number="1"), third
+    own = replace(report, workbook=replace(report.workbook, tables=tables))
+    assert [spec.number for spec in Material(own).specs] == ["2", "1", "3"]
+
+
 def test_one_table_says_which_estimate_to_trust_and_what_each_counts(report: Report) -> None:
     table = Tables(Material(report)).data["estimates"]
     (rows,) = table.groups

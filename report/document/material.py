@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
-from itertools import chain, islice
+from itertools import chain, count, islice
 
 from ...derivations.equation import Equation
 from ...derivations.proved import Proof, ProofStatus
@@ -107,14 +107,13 @@ class Material:
     @cached_property
     def specs(self) -> tuple[TableSpec, ...]:
         """The workbook's tables with what the sheet has of them; without any, scalars and axes."""
-        numbered: list[TableSpec] = []
-        own, workbook = 0, self.report.workbook
-        for spec in workbook.tables or tables_of(self.report.sheet, workbook.aside):
-            names = tuple(name for name in spec.columns if name in self.report.sheet)
-            if names or spec.words:
-                own += not spec.number
-                numbered.append(replace(spec, columns=names, number=spec.number or str(own)))
-        return tuple(numbered)
+        workbook, there = self.report.workbook, self.report.sheet
+        specs = workbook.tables or tables_of(there, workbook.aside)
+        shown = [replace(spec, columns=tuple(n for n in spec.columns if n in there)) for spec in specs]
+        shown = [spec for spec in shown if spec.columns or spec.words]
+        of_source = {spec.number for spec in shown}
+        own = (str(n) for n in count(1) if str(n) not in of_source)
+        return tuple(replace(spec, number=spec.number or next(own)) for spec in shown)
 
     @property
     def untold(self) -> tuple[str, ...]:
