@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from .archive.crate import added
 from .files.manifest import manifest_of
-from .inputs.folders import INPUTS, told
+from .inputs.folders import INPUTS, is_report, output, told
 from .machine.background import Background, Later
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
@@ -171,6 +171,9 @@ def _names(stage: Path) -> list[str]:
 
 def _begun(title: str, study: Study, out: Path) -> str:
     said = f"building '{title}' from {told(study.folder)} into {out}"
+    other = out.parent
+    if out == output(other) and is_report(other) and other.resolve() != study.folder.resolve():
+        said += f", where that of {told(other)} goes"
     before = manifest_of(out)  # none, or damaged: `verify` tells of that
     return f"{said}, in place of '{before.title}'" if before and before.title != title else said
 

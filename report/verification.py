@@ -199,7 +199,8 @@ def _moves(found: Differences | None) -> Iterator[Check]:
     for word, names in (("new", found.added), ("not there any more", found.removed)):
         for name in names:
             yield Check("number", name, False, f"{name} is {word}")
-    for kind, changes in (("method", found.method), ("published", found.published), ("data", found.checks)):
+    kinds = {"method": found.method, "row": found.rows, "published": found.published, "data": found.checks}
+    for kind, changes in kinds.items():
         for change in changes:
             said = (
                 f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"

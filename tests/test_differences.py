@@ -214,6 +214,16 @@ def test_rows_and_columns_come_and_go() -> None:
     assert "added      v[3], new" in as_text(found, 20)
 
 
+def test_a_row_that_is_called_otherwise_is_a_difference() -> None:
+    first, second = (replace(RESULT, words={"tests": {1: "oil A", 2: word}}) for word in ("oil B", "oil C"))
+    assert not compare(first, first).any
+    found = compare(first, second)
+    assert found.any
+    assert [(c.name, c.before, c.after) for c in found.rows] == [("tests 2", "oil B", "oil C")]
+    assert "row        tests 2: oil B\n                    -> oil C\n" in as_text(found, 20)
+    assert "tests 2" in as_markdown(found, 20)
+
+
 def test_another_warning_about_the_same_numbers_is_a_difference() -> None:
     warned = replace(RESULT, oddities=[Oddity(kind="limit", name="m", word="warning", sentence="too large")])
     assert not compare(warned, warned).any
@@ -249,7 +259,7 @@ def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:
     found = Differences(
         evil, evil, 1, 0,
         (Move(evil, "1", "moved", 1.0, 2.0, ("ok", "ok")),) * 3,
-        (), (evil,), (), (), (),
+        (), (evil,), (), (), (), (),
     )  # fmt: skip
     text = as_markdown(found, 2)
     rows = [line for line in text.splitlines() if line.startswith("|")]

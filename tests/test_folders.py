@@ -119,7 +119,8 @@ def test_verify_of_another_folders_output_is_not_that_of_where_it_lies(gauge: Pa
     """What was built from one folder into another's `out` is compared with what it was built from."""
     other = shutil.copytree(gauge, gauge.parent / "other")
     (other / "d.csv").write_text("test,d [nm]\n1,216\n2,205\n")
-    assert run("build", "../gauge", "--to", "json", "--out", "out", at=other)[0] == 0
+    code, said, _ = run("build", "../gauge", "--to", "json", "--out", "out", at=other)
+    assert (code, said.splitlines()[0].partition(" into ")[2]) == (0, "out, where that of report.toml goes")
     assert run("verify", "--run-workbook", "other/out", at=gauge.parent)[0] == 1
     assert (
         run("verify", "--run-workbook", "../other/out", at=gauge)[1].splitlines()[-1]

@@ -80,6 +80,8 @@ class Differences:
     added: tuple[str, ...]
     removed: tuple[str, ...]
     """`added` and `removed`: columns and rows that only one of them has."""
+    rows: tuple[OtherChange, ...]
+    """Rows that are called otherwise: of an index set, by their numbers."""
     published: tuple[OtherChange, ...]
     """Published values with another verdict."""
     checks: tuple[OtherChange, ...]
@@ -88,7 +90,8 @@ class Differences:
     @property
     def any(self) -> bool:
         """Whether they differ by more than rounding."""
-        return any((self.moved, self.method, self.added, self.removed, self.published, self.checks))
+        told = self.moved, self.method, self.added, self.removed, self.rows, self.published, self.checks
+        return any(told)
 
 
 def compare(
@@ -145,6 +148,7 @@ def compare(
         (*_rules(before, after), *_changes(before.proofs, after.proofs)),
         tuple(_only_in(after, before)),
         tuple(_only_in(before, after)),
+        tuple(_changes(_called(before), _called(after))),
         tuple(_changes(_verdicts(before), _verdicts(after))),
         tuple(_changes(_checks(before), _checks(after))),
     )
@@ -188,6 +192,12 @@ def _rules(before: Result, after: Result) -> list[OtherChange]:
 def _method(column: Column) -> str:
     over = f" on {column.axis}" if column.axis else ""
     return f"{column.rule or 'not told'} [{column.unit}]{over}"
+
+
+def _called(result: Result) -> dict[str, str]:
+    """The word of each row that has one, as ``samples 2``."""
+    every = {} if result.words is UNSET else result.words
+    return {f"{axis} {number}": word for axis, words in every.items() for number, word in words.items()}
 
 
 def _verdicts(result: Result) -> dict[str, str]:

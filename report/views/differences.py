@@ -37,7 +37,12 @@ def as_text(found: Differences, most: int) -> str:
 
 
 def _others(found: Differences) -> tuple[tuple[str, Sequence[OtherChange]], ...]:
-    return ("method", found.method), ("published", found.published), ("check", found.checks)
+    return (
+        ("method", found.method),
+        ("row", found.rows),
+        ("published", found.published),
+        ("check", found.checks),
+    )
 
 
 def _count(found: Differences) -> str:
