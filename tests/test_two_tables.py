@@ -252,6 +252,13 @@ def test_a_column_in_the_wrong_table_is_told_where_it_belongs(
     )
 
 
+def test_two_tables_are_two_files_and_one_of_words_alone_is_empty(tmp_path: Path) -> None:
+    both = TOML.replace("samples/today.csv", "./standards.csv")
+    assert told(two_tables.write(tmp_path / "both", report=both)) == [("LS216", "report.toml", 8)]
+    empty = two_tables.write(tmp_path / "empty", today="sample,lot,y_s [1]\n")
+    assert told(empty) == [("LS310", "today.csv", 1)]
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

@@ -255,6 +255,7 @@ class _Reader:
         self.more = more
         self.findings = Findings()
         self.files: dict[str, bytes] = {}
+        self.tabled: dict[str, str] = {}  # which table of rows a file is
         self.toml: TomlFile
         self.tables: TomlTables
         self.workbook: Workbook | None = None
@@ -429,6 +430,9 @@ class _Reader:
         if name is None:
             return None
         at = self.toml.value(*of.place, "file")
+        if (first := self.tabled.setdefault(Path(name).as_posix(), of.name)) != of.name:
+            self.findings.add("LS216", at, text=name, known=first)
+            return None
         source = self.source(
             name, LARGEST_TABLE, f"a first line with names and units, then one row a {of.row}", at
         )

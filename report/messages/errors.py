@@ -145,6 +145,12 @@ CATALOGUE: dict[str, Entry] = {
         "'source', if the published values are those of the workbook's own source",
         "leave it out if somebody else published them",
     ),
+    "LS216": Entry(
+        "one file for two tables",
+        "'{text}' is the file of the {known} already",
+        "a file of its own for each table of rows",
+        "the columns of each table stand in its own file, with a row for each of its rows",
+    ),
     "LS301": Entry(
         "missing column", "the column '{text}' is missing", hint="add '{example}' to the first line"
     ),
