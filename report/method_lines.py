@@ -57,14 +57,15 @@ class Declaration:
     column: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        for what, text in (("meaning", self.meaning), ("unit", self.unit)):
+        latex = self.column.get("latex", "")
+        for what, text in (("meaning", self.meaning), ("unit", self.unit), ("LaTeX", latex)):
             if not isinstance(text, str):
                 raise SheetError(f"a {what} is a text in quotes, not {text!r}")
         if self.unit.strip() and not _is_unit(self.unit) and self.meaning.strip() and _is_unit(self.meaning):
             raise SheetError(
                 f"{self.unit!r} is no unit, and {self.meaning!r}, the meaning, is: have they changed places?"
             )
-        if wrong := amiss(latex := self.column.get("latex", "")):
+        if wrong := amiss(latex):
             raise SheetError(f"latex={latex!r} {wrong}")
 
 

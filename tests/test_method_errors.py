@@ -74,8 +74,15 @@ a = let(2*x, "twice", latex="a_{2")
 b = let(3*x, "thrice", latex="50 % of b")
 c = let(4*x, "four times", latex="c_4_1")
 d = let(5*x, "five times", latex="d_5%s")
+e = let(6*x, "six times", latex="e~6")
+f = let(7*x, "seven times", latex=7)
 """,
-        {0: "a brace without its other", 1: "means another thing in LaTeX", 2: "two scripts in one place"},
+        {
+            0: "a brace without its other",
+            1: "means another thing in LaTeX",
+            2: "two scripts in one place",
+            5: "a LaTeX is a text in quotes, not 7",
+        },
     ),
     "nothing that says what it is": (
         """\

@@ -78,7 +78,7 @@ def amiss(template: str) -> str:
     """
     latex = with_index(template, "1")
     bare = re.sub(r"\\.", "", latex)
-    if special := re.search("[%#$&~]", bare):
+    if special := re.search("[%#$&]", bare):
         return f"has a '{special[0]}', which means another thing in LaTeX: write \\{special[0]}"
     depths = list(accumulate((sign == "{") - (sign == "}") for sign in bare))
     if depths and (min(depths) < 0 or depths[-1]):
