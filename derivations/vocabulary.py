@@ -6,6 +6,7 @@ of one paper is a speed with a prime, that of another a voltage.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sympy import Expr, Indexed, IndexedBase, Rel, Symbol
 
-__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "spelt", "subscripted"]
+__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "amiss", "spelt", "subscripted", "with_index"]
 
 _SMALL = "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa varkappa lambda mu nu"
 _SMALL += " xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
@@ -22,6 +23,9 @@ _CAPITAL = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
 _OTHER = "aleph beth gimel daleth ell eth hbar hslash mho wp"
 _LETTERS = frozenset(f"{_SMALL} {_CAPITAL} {_OTHER}".split())
 """What LaTeX has a letter for."""
+_COMMAND, _GROUP = re.compile(r"\\(?:[A-Za-z]+|.)"), re.compile(r"\{([^{}]*)\}")
+_TWICE = re.compile(r"_.(?:\^.|')*_|(?:\^.(?:_.)*|'_.)[\^']|[_^](?:$|[_^'])")
+"""Two scripts in one place, or none where one is said to be, of letters alone."""
 
 
 def subscripted(name: str, subscript: str) -> str:
@@ -44,6 +48,49 @@ def spelt(name: str) -> str:
     """
     head, _, tail = name.partition("_")
     return _word(head) + (f"_{{{_word(tail)}%s}}" if tail else "%s")
+
+
+def with_index(template: str, index: str = "") -> str:
+    r"""Put an index where the LaTeX of a quantity has its place for one.
+
+    >>> with_index("m_{red%s}"), with_index("e%s", "1")
+    ('m_{\\mathrm{red}}', 'e_{1}')
+    >>> with_index("g_2%s", "1"), with_index(r"x_{m_2%s}", "k")  # LaTeX takes no second subscript
+    ('g_{2_{1}}', 'x_{m_{2_{k}}}')
+    """
+    # A subscript of several letters is a word, not a product.
+    upright = re.sub(r"_\{([A-Za-z]{2,})(?=[%}])", r"_{\\mathrm{\1}", template)
+    if not index:
+        return upright.replace("%s", "")
+    if "%s" in upright:
+        # Behind a subscript it is one of the subscript.
+        inside = re.sub(r"_(?:\{((?:[^{}]|\{[^{}]*\})*)\}|(\\[A-Za-z]+|[^{}\\%]))%s", r"_{\1\2%s}", upright)
+        return inside.replace("%s", f"_{{{index}}}")
+    return f"{{{upright}}}_{{{index}}}" if "_" in upright else f"{upright}_{{{index}}}"
+
+
+def amiss(template: str) -> str:
+    r"""What TeX would not take of the LaTeX of a quantity, in words; empty if it takes it.
+
+    >>> amiss(r"\hat{x}_{m%s}"), amiss("x'^2"), amiss("x_{m")
+    ('', '', 'has a brace without its other one')
+    >>> amiss("x_1_2"), amiss("{x_1}_2")
+    ('has two scripts in one place: put the first and its letter in braces', '')
+    >>> amiss("50 % x"), amiss(r"50 \%")
+    ("has a '%', which means another thing in LaTeX: write \\%", '')
+    """
+    text = _COMMAND.sub("x", with_index(template, "1").replace(" ", ""))
+    if special := re.search("[%#$&]", text):
+        return f"has a '{special[0]}', which means another thing in LaTeX: write \\{special[0]}"
+    scripts = False
+    while group := _GROUP.search(text):  # from the inside out, each is one letter of what is around it
+        scripts = scripts or _TWICE.search(group[1]) is not None
+        text = f"{text[: group.start()]}x{text[group.end() :]}"
+    if re.search("[{}]", text):
+        return "has a brace without its other one"
+    if scripts or _TWICE.search(text):
+        return "has two scripts in one place: put the first and its letter in braces"
+    return ""
 
 
 def _word(text: str) -> str:

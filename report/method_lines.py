@@ -13,9 +13,8 @@ from sympy.core.relational import Relational
 
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
-from ..derivations.vocabulary import Quantity
+from ..derivations.vocabulary import Quantity, amiss
 from .column import Limit, SheetError
-from .document.names import amiss
 from .quantity import Bounds, behind
 
 __all__ = [

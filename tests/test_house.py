@@ -142,7 +142,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     ),
     **{
         part: (
-            DECLARED | {*METHOD[: place + 1], "derivations"} | rooms("document.names", "inputs.keys"),
+            DECLARED | {*METHOD[: place + 1], "derivations"} | rooms("inputs.keys"),
             ALGEBRA | ({"scipy"} if part == "report.codata" else set()),
         )
         for place, part in enumerate(METHOD)

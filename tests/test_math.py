@@ -29,8 +29,9 @@ from sympy.printing.latex import greek_letters_set, other_symbols, tex_greek_dic
 from loopsheet.derivations import soft_impact
 from loopsheet.derivations.reductions import Greatest, Median
 from loopsheet.derivations.symbols import VOCABULARY, F_of, k, q
+from loopsheet.derivations.vocabulary import with_index
 from loopsheet.report.document.math import MathPrinter
-from loopsheet.report.document.names import latex_names, name_latex, with_index
+from loopsheet.report.document.names import latex_names, name_latex
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.views.mathml import mathml, mathml_block
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, width

@@ -15,9 +15,9 @@ import pytest
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.formula import ArrayFormula
 
+from loopsheet.derivations.vocabulary import with_index
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, letters
-from loopsheet.report.document.names import with_index
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.inputs.folders import PAPER

@@ -2,15 +2,12 @@ r"""Names for the eye: LaTeX of what quantities are called, and of signed terms 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
-from itertools import accumulate
 
-from ...derivations.vocabulary import Vocabulary, spelt
+from ...derivations.vocabulary import Vocabulary, spelt, with_index
 from ..sheet import Column
-from .notation import read
 
-__all__ = ["Terms", "amiss", "join", "latex_names", "name_latex", "with_index"]
+__all__ = ["Terms", "join", "latex_names", "name_latex"]
 
 Terms = list[tuple[bool, str]]
 """LaTeX of the terms of a sum, each with whether it is subtracted."""
@@ -45,47 +42,6 @@ def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "
     ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
     """
     return with_index(names[name] if names and name in names else spelt(name), index)
-
-
-def with_index(template: str, index: str = "") -> str:
-    r"""Put an index where the LaTeX of a quantity has its place for one.
-
-    >>> with_index("m_{red%s}"), with_index("e%s", "1")
-    ('m_{\\mathrm{red}}', 'e_{1}')
-    >>> with_index("g_2%s", "1"), with_index(r"x_{m_2%s}", "k")  # LaTeX takes no second subscript
-    ('g_{2_{1}}', 'x_{m_{2_{k}}}')
-    """
-    # A subscript of several letters is a word, not a product.
-    upright = re.sub(r"_\{([A-Za-z]{2,})(?=[%}])", r"_{\\mathrm{\1}", template)
-    if not index:
-        return upright.replace("%s", "")
-    if "%s" in upright:
-        # Behind a subscript it is one of the subscript.
-        inside = re.sub(r"_(?:\{((?:[^{}]|\{[^{}]*\})*)\}|(\\[A-Za-z]+|[^{}\\%]))%s", r"_{\1\2%s}", upright)
-        return inside.replace("%s", f"_{{{index}}}")
-    return f"{{{upright}}}_{{{index}}}" if "_" in upright else f"{upright}_{{{index}}}"
-
-
-def amiss(template: str) -> str:
-    r"""What TeX would not take of the LaTeX of a quantity, in words; empty if it takes it.
-
-    >>> amiss(r"\hat{x}_{m%s}"), amiss("x_{m")
-    ('', 'has a brace without its other one')
-    >>> amiss("x_1_2"), amiss("{x_1}_2")
-    ('has two scripts in one place: put the first and its letter in braces', '')
-    >>> amiss("50 % x"), amiss(r"50 \%")
-    ("has a '%', which means another thing in LaTeX: write \\%", '')
-    """
-    latex = with_index(template, "1")
-    bare = re.sub(r"\\.", "", latex)
-    if special := re.search("[%#$&]", bare):
-        return f"has a '{special[0]}', which means another thing in LaTeX: write \\{special[0]}"
-    depths = list(accumulate((sign == "{") - (sign == "}") for sign in bare))
-    if depths and (min(depths) < 0 or depths[-1]):
-        return "has a brace without its other one"
-    if any(part.kind == "scripts" and part.parts[0].kind == "scripts" for part in read(latex).walk()):
-        return "has two scripts in one place: put the first and its letter in braces"
-    return ""
 
 
 def join(terms: Iterable[tuple[bool, str]]) -> str:

@@ -25,12 +25,6 @@ class Notation(NamedTuple):
     text: str = ""
     parts: tuple[Notation, ...] = ()
 
-    def walk(self) -> Iterator[Notation]:
-        """It and all that it is made of."""
-        yield self
-        for part in self.parts:
-            yield from part.walk()
-
 
 NONE = Notation("row")
 FUNCTIONS = frozenset({"ln", "exp", "max", "min"})

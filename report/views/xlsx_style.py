@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ..document.names import with_index
+from ...derivations.vocabulary import with_index
 from ..document.notation import fragments
 from ..result.numbers import Numeral, rounded
 
