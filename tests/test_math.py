@@ -65,9 +65,14 @@ with evaluate(False):
         (Rational(1, 2) * b * a, r"\frac{1}{2} b a"),
         (b * a / 2, r"\frac{b a}{2}"),
         (-(b / a), r"-\frac{b}{a}"),
+        # decimal numbers below, as they were typed
+        (Rational(10, 37) * b, r"\frac{b}{3.7}"),
+        (Rational(200, 251) * b, r"\frac{2}{2.51} b"),
+        (Rational(10, 3) * b, r"\frac{10}{3} b"),
         # powers
         (x**2, "x^{2}"),
         (x ** Rational(3, 2), "x^{3/2}"),
+        (pi**2, r"\pi^{2}"),
         (x ** (2 / (a + 1)), "x^{2/(a + 1)}"),
         ((b / a) ** x, r"\left(\frac{b}{a}\right)^{x}"),
         ((b * a) ** 2, "(b a)^{2}"),

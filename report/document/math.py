@@ -12,7 +12,24 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from sympy import Add, And, Basic, Expr, Indexed, Integral, Mul, Number, Piecewise, Pow, Rational, Sum, Symbol
+from sympy import (
+    Add,
+    And,
+    Basic,
+    Expr,
+    Float,
+    Indexed,
+    Integer,
+    Integral,
+    Mul,
+    Number,
+    NumberSymbol,
+    Piecewise,
+    Pow,
+    Rational,
+    Sum,
+    Symbol,
+)
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
@@ -186,7 +203,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         if below:
             return self._unit(above, below, True, True)
         raised = self._inline(exponent)
-        if isinstance(base, (Symbol, Indexed, AppliedUndef)):
+        if isinstance(base, (Symbol, NumberSymbol, Indexed, AppliedUndef)):
             name = self._print(base)
             primed = re.fullmatch(r"(\\?[A-Za-z]+)('+)(_\{.*\})?", name)
             if primed:  # a prime is a superscript already, and there is only one
@@ -347,7 +364,13 @@ def _factors(expr: Expr) -> list[Expr]:
 def _halves(factor: Basic) -> tuple[list[Expr], list[Expr]]:
     """What a factor puts above and below the bar of a fraction."""
     if isinstance(factor, Rational) and not factor.is_integer:
-        return [Rational(factor.p)], [Rational(factor.q)]
+        above, below = Integer(factor.p), Integer(factor.q)
+        # In lowest terms tens stand above only where a decimal number stood below: 10/37 was typed 1/3.7.
+        while above % 10 == 0 and below > 10:
+            above, below = above / 10, below / Integer(10)
+        if below.is_integer:
+            return [above], [below]
+        return [] if above == 1 else [above], [Float(str(below.evalf(15)), 15)]
     if isinstance(factor, Pow):
         exponent = factor.exp
         if isinstance(exponent, Number) and exponent.is_negative:
