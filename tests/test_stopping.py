@@ -557,5 +557,9 @@ def test_an_import_that_is_ended_while_the_command_line_is_read_is_no_fault_of_o
         raise AssertionError("no signal came")
 
     monkeypatch.setattr(cli, "_parse", parse)
-    assert main(["build", "paper"]) == 128 + signal.SIGINT
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored
+    try:
+        assert main(["build", "paper"]) == 128 + signal.SIGINT
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert capsys.readouterr().err == "\nstopped; nothing was half-written\n"
