@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from dataclasses import replace
 from decimal import Decimal
@@ -195,6 +196,23 @@ def test_rows_of_table_3_are_relabelled(paper: Report) -> None:
     assert [(each.printed, each.right, each.cell) for each in paper.referee.labels] == [
         ("(6)", "(7)", "Cprime_eq7"),
         ("(8)", "(9)", "Cprime_eq9"),
+    ]
+
+
+def test_rows_are_relabelled_where_a_datum_is_missing(tmp_path: Path) -> None:
+    """What rests on it has no value: a row can be compared as one column, and as another it cannot."""
+    folder = shutil.copytree(PAPER, tmp_path / "steel")
+    table, published = folder / "measurements.csv", folder / "published.csv"
+    table.write_text(table.read_text(encoding="utf-8").replace("0.479", ""), encoding="utf-8")
+    rows = published.read_text(encoding="utf-8").splitlines(keepends=True)
+    published.write_text("".join(row for row in rows if re.match("source|.*,Cprime_", row)), encoding="utf-8")
+    report = refereed(Study(folder).computed)
+    lost = [each for each in report.comparisons if each.verdict == "not-checkable"]
+    assert [(each.cell.name, each.cell.label) for each in lost] == [("Cprime_eq7", (3,))]
+    told = [line.strip() for line in lines(report.referee, lambda _: "") if line.startswith("  label ")]
+    assert [re.findall("Cprime_eq.", line) for line in told] == [
+        ["Cprime_eq7", "Cprime_eq9"],
+        ["Cprime_eq9", "Cprime_eq7"],
     ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import inf, isfinite, isnan
 
 from ..result.verdict import Fit, Relabelled
 from ..result.verdict_words import mismatch as in_words
@@ -64,7 +65,7 @@ def _labels(problem: Problem, numbers: Numbers, first: Explained | None) -> Iter
         right = next(iter(sorted(numbers[would])))
         gives = tuple((other.name, other.unit) for other in named if not fitting)
         wanted = column.meaning.split(",")[0], column.unit
-        others = {name: off for name, off in mismatch.items() if name != would}
+        others = {name: off for name, off in mismatch.items() if name != would and isfinite(off)}
         yield Relabelled(source, would, number, right, gives, wanted, mismatch[would], others)
 
 
@@ -73,9 +74,17 @@ def _alike(one: Column, other: Column) -> bool:
 
 
 def _as(problem: Problem, members: Sequence[int], cell: str, first: Explained | None) -> float:
-    """The worst mismatch of all values if some were those of another column."""
+    """The worst mismatch of all values if some were those of another column; infinite where none has a value.
+
+    A row that has none there, such as one that rests on what was not measured, is not asked for.
+    """
     asked = (problem if first is None else first.problem).renamed(members, cell)
     box = _like(asked, first)
+    cells = asked.at((box or asked.box).start).cells
+    lost = [n for n in members if isnan(cells[n])]
+    if len(lost) == len(members):
+        return inf
+    asked = asked.ignoring(lost)
     return counted(asked, best(asked, box), box).mismatch
 
 
@@ -122,6 +131,9 @@ def fits(problem: Problem, names: Sequence[str], first: Explained | None) -> tup
             own = Problem.of(campaign, those, campaign.free, whole.conventions)
             box = _like(own, first)
             mismatch[name] = counted(own, best(own, box, until=PLENTY), box).mismatch
+        mismatch = {name: off for name, off in mismatch.items() if isfinite(off)}
+        if len(mismatch) < 2:
+            continue
         # Which of two that are shown alike comes first shall not depend on their last digits.
         ranked = sorted(mismatch.items(), key=lambda item: (float(in_words(item[1])), names.index(item[0])))
         found.append(Fit(value, dict(ranked)))
