@@ -8,11 +8,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from small_report import end_gauge
 
 from loopsheet.report.inputs.inputs import Inputs
 from loopsheet.report.messages.diagnostics import Diagnostic, Location
 from loopsheet.report.result.agreement import Agreement
-from loopsheet.report.result.findings import Check, of_diagnostics, of_engine
+from loopsheet.report.result.findings import Check, checks, of_diagnostics, of_engine
+from loopsheet.report.study import Study
 from loopsheet.report.views.checks import FORMATS, as_github, as_json, as_junit, as_markdown, summary
 from loopsheet.report.views.markdown import cell, code
 
@@ -187,3 +189,24 @@ def test_wrong_input_as_checks() -> None:
     (check,) = of_diagnostics([Diagnostic("LS401", "no number", Location("f", 1, 2), "digits", "try")])
     assert (check.kind, check.name, check.passed) == ("input", "LS401", False)
     assert check.sentence == "f:1:2: no number; try"
+
+
+@pytest.mark.parametrize(
+    ("published", "times"),
+    [
+        ("50000.838,mm", ", about 1000 times as small, perhaps by a unit or a decimal point ("),
+        ("50.000838,um", ", about 1000 times as large, perhaps by a unit or a decimal point ("),
+        ("5.01,mm", ", about 10 times as large, perhaps"),
+        ("51,mm", ""),
+        ("50.000839,mm", ""),
+        ("-50000,mm", ""),
+        ("0.0,mm", ""),
+        ("5.0e-200,um", ", about 1e204 times as large, "),
+    ],
+)
+def test_what_is_off_by_a_power_of_ten_is_told_so(tmp_path: Path, published: str, times: str) -> None:
+    folder = end_gauge(tmp_path, f"source,cell,index,value,unit\nH.1,l,1,{published}\n")
+    (said,) = (c.message for c in checks(Study(folder).computed) if c.kind == "published")
+    assert said.startswith(f"H.1 l[1] prints {published.partition(',')[0]}, recomputed ")
+    assert times in said
+    assert (" times as " in said) == bool(times)

@@ -6,6 +6,7 @@ another kind of check, add a function here that makes them and its line in :func
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -41,6 +42,10 @@ __all__ = [
 
 CONFORMITY = "conformity"
 """The kind of the checks of limits."""
+NEAR_A_POWER = 0.05
+"""So far from a power of ten, as a share of it, the ratio of recomputed and published may be."""
+PLAIN = 6
+"""Up to this exponent powers of ten are written out."""
 MOST_NAMED = 5
 """Of the findings about an engine; one wrong formula spoils many cells."""
 
@@ -99,14 +104,31 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     elif published.expect and comparison.verdict == "same":
         said += f" and no longer differs; drop its '{published.expect}'"
     elif published.expect and not comparison.as_expected:
-        said += f", recomputed {comparison.again}, and {_otherwise(comparison)}"
+        said += f", recomputed {comparison.again}{_misplaced(comparison)}, and {_otherwise(comparison)}"
     else:
-        said += f", recomputed {comparison.again} ({_word(comparison)})"
+        misplaced = "" if comparison.as_expected else _misplaced(comparison)
+        said += f", recomputed {comparison.again}{misplaced} ({_word(comparison)})"
         said += f": {published.reason}" if published.reason else ""
     field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
     places = published.places
     at = places.get(field.get(comparison.finding, ""), places.get("value", Location()))
     return Check("published", name, comparison.as_expected, said, at, skipped=skipped)
+
+
+def _misplaced(comparison: Comparison) -> str:
+    """What a value that is off by about a power of ten may be due to; empty if it is not."""
+    cell, printed = comparison.cell, comparison.published.printed
+    ratio = (
+        0.0 if cell.value is None or not printed.number else printed.of(cell.value) / float(printed.number)
+    )
+    if not 0 < ratio < math.inf:
+        return ""
+    power = round(math.log10(ratio))
+    if not power or abs(ratio / 10.0**power - 1) > NEAR_A_POWER:
+        return ""
+    times = 10 ** abs(power) if abs(power) <= PLAIN else f"1e{abs(power)}"
+    size = "large" if power > 0 else "small"
+    return f", about {times} times as {size}, perhaps by a unit or a decimal point"
 
 
 def of_limits(found: Conformity, report: Report) -> Check:
