@@ -69,6 +69,7 @@ with evaluate(False):
         (Rational(10, 37) * b, r"\frac{b}{3.7}"),
         (Rational(200, 251) * b, r"\frac{2}{2.51} b"),
         (Rational(10, 3) * b, r"\frac{10}{3} b"),
+        (Rational(10, 12345678901234567) * b, r"\frac{b}{1234567890123456.7}"),
         # powers
         (x**2, "x^{2}"),
         (x ** Rational(3, 2), "x^{3/2}"),

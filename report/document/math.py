@@ -364,13 +364,14 @@ def _factors(expr: Expr) -> list[Expr]:
 def _halves(factor: Basic) -> tuple[list[Expr], list[Expr]]:
     """What a factor puts above and below the bar of a fraction."""
     if isinstance(factor, Rational) and not factor.is_integer:
-        above, below = Integer(factor.p), Integer(factor.q)
         # In lowest terms tens stand above only where a decimal number stood below: 10/37 was typed 1/3.7.
-        while above % 10 == 0 and below > 10:
-            above, below = above / 10, below / Integer(10)
-        if below.is_integer:
-            return [above], [below]
-        return [] if above == 1 else [above], [Float(str(below.evalf(15)), 15)]
+        tens = 0
+        while factor.p % 10 ** (tens + 1) == 0 and factor.q > 10 ** (tens + 1):
+            tens += 1
+        above = Integer(factor.p // 10**tens)
+        if not tens:
+            return [above], [Integer(factor.q)]
+        return [] if above == 1 else [above], [Float(f"{factor.q}e-{tens}")]
     if isinstance(factor, Pow):
         exponent = factor.exp
         if isinstance(exponent, Number) and exponent.is_negative:

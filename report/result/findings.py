@@ -106,8 +106,7 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
     elif published.expect and not comparison.as_expected:
         said += f", recomputed {comparison.again}{_misplaced(comparison)}, and {_otherwise(comparison)}"
     else:
-        misplaced = "" if comparison.as_expected else _misplaced(comparison)
-        said += f", recomputed {comparison.again}{misplaced} ({_word(comparison)})"
+        said += f", recomputed {comparison.again}{_misplaced(comparison)} ({_word(comparison)})"
         said += f": {published.reason}" if published.reason else ""
     field = {UNPINNED: "recomputed", UNREASONED: "reason", UNEXPLAINED: "explained"}
     places = published.places
@@ -116,11 +115,11 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 
 
 def _misplaced(comparison: Comparison) -> str:
-    """What a value that is off by about a power of ten may be due to; empty if it is not."""
+    """What a value that is not as expected and off by about a power of ten may be due to; else empty."""
     cell, printed = comparison.cell, comparison.published.printed
-    ratio = (
-        0.0 if cell.value is None or not printed.number else printed.of(cell.value) / float(printed.number)
-    )
+    if comparison.as_expected or cell.value is None or not printed.number:
+        return ""
+    ratio = printed.of(cell.value) / float(printed.number)
     if not 0 < ratio < math.inf:
         return ""
     power = round(math.log10(ratio))
