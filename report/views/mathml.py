@@ -57,7 +57,7 @@ def _row(parts: Sequence[Notation], display: bool = False, opened: bool = False)
         if before is not None:
             apart = before.kind in _STAND_APART or (before.kind == "limits" and not display)
             if part.kind == "upright" and part.text in FUNCTIONS and apart:
-                own = f'<mspace width="0.17em"/>{own}'
+                own = f'<mspace width=".17em"/>{own}'
             if part == _MINUS and before.kind == "sign" and before.text in _BEFORE_SIGN:
                 own = '<mo form="prefix">−</mo>'
         printed.append(own)

@@ -58,6 +58,9 @@ function savedTests(state, axis) {
 // Those that take part, of every table.
 const savedUsed = (state) => Object.keys(state.tables).flatMap((axis) => savedTests(state, axis).filter(({ used }) => used).map((test) => ({ axis, ...test })));
 
+// What a build of the files is made from.
+const asBuilt = (state) => JSON.stringify([savedUsed(state), state.parameters]);
+
 // The inputs that a build of the files would refuse.
 function refusedInputs(state) {
   const tests = savedUsed(state), empty = (name) => tests.every(({ cells }) => !cells[name]);

@@ -81,15 +81,24 @@ function takeUp(text) {
 
 function recall() {
   const { edits } = byId("live-issued").dataset;
-  if (edits && takeUp(edits)) note("The edits are those of the page that was stored. Undo leads back.");
+  if (edits && takeUp(edits)) note("These edits were stored with the page. Undo leads back.");
   const own = remembering((memory) => memory.getItem(MINE));
   if (own) {
     note(takeUp(own) ? "Your edits of last time are here again." : "What this browser kept of your edits cannot be read; it was not used.");
-  } else if (remembering((memory) => Object.keys(memory).some((key) => key.startsWith(OURS)))) {
-    // They stay where they are.
-    note("This browser keeps edits of another issue of this report. They are not used in this one.");
+  } else if (remembering(keepsOthers)) {
+    note("This browser keeps edits of another issue of this report. They are not used here.");
   }
   followLink();
+}
+
+// Whether edits of other issues are kept. They stay where they are, but for those that this issue was built from.
+function keepsOthers(memory) {
+  const others = Object.keys(memory).filter((key) => key.startsWith(OURS)), issued = asBuilt(page.history.issued);
+  return others.filter((key) => {
+    const state = readStates(() => memory.getItem(key))?.at(-1), arrived = state && asBuilt(state) === issued;
+    if (arrived) memory.removeItem(key);
+    return !arrived;
+  })[0];
 }
 
 // What another window of this very report keeps is shown here too: neither then writes over the other.

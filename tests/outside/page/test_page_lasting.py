@@ -142,7 +142,7 @@ def test_a_page_that_a_browser_stored_goes_on_from_its_edits(
     live = open_page(copied)
     edit(live)
     other = opened(open_page, stored(live, tmp_path / "stored.html"))
-    assert "page that was stored" in other.text("live-note")
+    assert "stored with the page" in other.text("live-note")
     assert other.cells() == live.cells()
     assert (other.around(), other.paths("loops")) == (live.around(), live.paths("loops"))
     assert other.page.locator("#live-panel").count() == 1
@@ -348,6 +348,24 @@ def test_edits_of_an_older_issue_stay_where_they_are(open_page: Open, copied: Pa
     copied.write_bytes(issued)
     reload(live)
     assert (live.input("v", 1).input_value(), live.input("x_p", 2).input_value()) == ("2.334", "29.8")
+
+
+def test_edits_that_were_saved_and_built_are_done_with(open_page: Open, copied: Path, tmp_path: Path) -> None:
+    """The day's work in turns: edit, save, build, edit again; no issue of it is one of other edits."""
+    live = open_page(copied)
+    edit(live)
+    live.page.locator('[data-remove="4"]').click()
+    for round in ("one", "two"):
+        folder = tmp_path / round
+        live.save(folder)
+        build.build(Study(folder), folder / "out", ("html",))
+        copied.write_bytes((folder / "out" / "report.html").read_bytes())
+        reload(live)
+        assert live.text("live-note") == ""
+        assert as_issued(live)
+        assert live.input("x_p", 2).input_value() == "29.80"
+        assert live.page.evaluate("() => Object.keys(localStorage)") == []
+        live.type("v", 1, "2.4")
 
 
 @pytest.mark.parametrize(
