@@ -6,6 +6,7 @@ import argparse
 import io
 import os
 import re
+import shlex
 import signal
 import sys
 from collections.abc import Sequence
@@ -130,7 +131,24 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
         raise unknown("option", left[0], options.options)
     if left:
         raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
+    _in_order(options)
     return options
+
+
+def _in_order(options: argparse.Namespace) -> None:
+    """Refuse a folder that stands where what is asked of it should."""
+    from .inputs.folders import WORD, is_report, written
+    from .messages.errors import UsageError, diagnose
+
+    named = getattr(options, "folder", None)
+    word = getattr(options, "cell", None) or (named and getattr(options, "equation", None))
+    if not word or is_report(Path(named or "")) or not (word == WORD or is_report(Path(word))):
+        return
+    folder = word if word == WORD else written(Path(word))
+    asked = shlex.quote(named) if named else "CELL"
+    reason = f"'{word}' is a folder: what is asked of it stands before it"
+    hint = f"'loopsheet {options.verb} {asked} {folder}'"
+    raise UsageError(diagnose("LS617", reason=reason, known="", suggestion=hint))
 
 
 def command() -> NoReturn:

@@ -132,7 +132,7 @@ def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[
         (["show", "alhpa", "paper"], "did you mean 'alpha'?"),
         (["show", "alpha[1-9]", "paper"], "unknown row of alpha '1-9'"),
         (["show", "alpha[", "paper"], "unknown cell 'alpha['"),
-        (["show", "alpha[1-2", "paper"], "such as alpha[1-2] or x_m[3]"),
+        (["show", "alpha[1-2", "paper"], "a column, or a row of it in brackets, such as alpha[1-2]"),
         (["why", "alpha[]", "paper"], "unknown cell 'alpha[]'"),
         (["why", "alpha[1-2]]", "paper"], "unknown cell 'alpha[1-2]]'"),
         (["why", "alpha", "paper"], "unknown single cell 'alpha'"),

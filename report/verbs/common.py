@@ -193,6 +193,13 @@ def find_one(report: Report, address: str) -> tuple[Column, tuple[int, ...]]:
     return column, labels[0]
 
 
+def _address(report: Report) -> str:
+    """A cell of a report, as an example: one with an index, if there is one."""
+    columns = [column for column in report.sheet.by_name.values() if report.values.labels(column)]
+    column = next((each for each in columns if each.axis and each.equation), columns[0])
+    return report.values.address(column.name, 0)
+
+
 def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
     """The column of an address such as ``alpha[1-2]``, and the rows that it names: all without an index.
 
@@ -207,7 +214,7 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
 
     found = parts(address)
     if found is None or address.startswith("("):
-        known = "a column such as alpha, or a row of it in brackets, such as alpha[1-2] or x_m[3]"
+        known = f"a column, or a row of it in brackets, such as {_address(report)}"
         instead = f"'loopsheet prove \"{address}\"' tells of an equation" if address.startswith("(") else ""
         raise UsageError(diagnose("LS604", kind="cell", text=address, known=known, suggestion=instead))
     name, index = found

@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     from ..archive import scaffold
     from ..inputs.folders import written
     from ..messages.diagnostics import visible
-    from ..messages.errors import UnknownWorkbook, unknown
+    from ..messages.errors import UnknownWorkbook, UsageError, diagnose, listing, unknown
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
 
@@ -40,6 +40,10 @@ def run(options: argparse.Namespace) -> int:
         workbook = find_workbook(*((code.name, code.parent, content) if code else (name, Path())))
     except UnknownWorkbook as error:
         names = [*SHIPPED, *sorted(path.stem for path in METHODS.glob("*.py"))]
+        if name.endswith(".py"):
+            asked = f"the name of a file that is there, or {listing(names)}"
+            reason = f"there is no such file: '{name}'"
+            raise UsageError(diagnose("LS617", reason=reason, known=asked, suggestion="")) from error
         raise unknown("workbook", name, names) from error
     if options.ci and options.ci not in scaffold.CI:
         raise unknown("service", options.ci, scaffold.CI)

@@ -121,7 +121,7 @@ _IMPLIED = re.compile(
     rf"|</p>\n?(?=<(?:{_FLOW})[ >]|</(?:article|aside|div|section|td)>|</li>(?!<li[ >]))"
     r"|(?P<tag><(?!meta)[a-z]\w*(?: [\w-]+(?:=\"[^\"<>]*\")?)+ ?/?>)|&#39;"
 )
-"""End tags that HTML lets one leave out, for what comes next says that the element is over; tags; apostrophes.
+"""End tags that HTML lets one leave out, for what comes next says that the element is over; tags; quotes.
 
 Where the end tag of what is around it goes too (`</td></tr><tr>`), one of both stays: validators ask for it.
 """
