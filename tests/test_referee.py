@@ -261,6 +261,13 @@ def test_a_broken_published_value_is_named(
     assert f"is printed {after.rsplit(',', maxsplit=1)[-1]} for {would}" in failed[1].message
 
 
+def test_a_column_in_another_unit_is_named_where_what_is_free_was_fitted_to_it(tmp_path: Path) -> None:
+    """The coefficient of the fit is not printed, and is off by a factor of 10^7 or so with the column."""
+    report = changed(tmp_path, "measurements.csv", "x_p [um]", "x_p [mm]")
+    said = [check.message for check in checks(report) if check.name == "known misprints"]
+    assert "perhaps the numbers of x_p are to be multiplied by 1e-3: then all 27" in said[0]
+
+
 def test_a_misprint_that_is_no_longer_needed_is_a_finding(tmp_path: Path) -> None:
     report = changed(tmp_path, "measurements.csv", "29.7", "29.8")
     failed = [check for check in checks(report) if not check.passed]

@@ -190,17 +190,28 @@ class Problem:
         places = self.sources[name]
         return np.where(places < 0, np.nan, points[..., places])
 
+    @cached_property
+    def fitted(self) -> list[int]:
+        """The places of those unknowns that are not printed, and that the sheet computes."""
+        sheet = self.campaign.sheet
+        return [
+            n for n, unknown in enumerate(self.unknowns)
+            if unknown.printed is None and not isinstance(sheet[unknown.column].rule, Given)
+        ]  # fmt: skip
+
+    def fitted_to(self, name: str) -> list[int]:
+        """Those of them that follow from a given column."""
+        sheet = self.campaign.sheet
+        follow = {column.name for column in sheet.columns if sheet[name] in sheet.ancestors(column)}
+        return [n for n in self.fitted if self.unknowns[n].column in follow]
+
     def restarted(self, points: Array) -> Array:
         """Points (points, unknowns) with what is free as it would follow from the rest.
 
         Where the search for another input begins, a fit that is not printed is better taken from that
         input than from the one that is printed.
         """
-        sheet = self.campaign.sheet
-        free = [
-            n for n, unknown in enumerate(self.unknowns)
-            if unknown.printed is None and not isinstance(sheet[unknown.column].rule, Given)
-        ]  # fmt: skip
+        free = self.fitted
         if not free:
             return points
         names = {self.unknowns[n].column for n in free}

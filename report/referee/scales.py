@@ -103,7 +103,9 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
             continue
         every = [members] if len(members) == 1 else [members, *([n] for n in members)]
         for some in every:
-            if search.worth(search.resting_on(some)):
+            # In another unit of a column a fit to it is far from where it is by this one.
+            moved = [*some, *problem.fitted_to(name)] if some is members else some
+            if search.worth(search.resting_on(moved)):
                 boxes = ((power, _scaled(problem, some, power)) for power in POWERS)
                 tried += [_Misplaced(some, power, box) for power, box in boxes if box is not None]
     alive = [tried[place] for place in search.screened([one.box for one in tried])]
