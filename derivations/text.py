@@ -58,6 +58,8 @@ def text(expression: Any, vocabulary: Vocabulary) -> str:
     "x_m2*(v'_1/v'_2)^(2/(alpha + 1))"
     >>> text(LEDGER["(12c)"].members[1], LEDGER.vocabulary)
     "m_red*v'_2^2/2*(alpha + 1)/x_m2^(alpha + 1)"
+    >>> text(Symbol("F") / Symbol("A"), LEDGER.vocabulary)
+    'F/A'
     """
     return Wording(vocabulary).text(expression)
 
@@ -153,6 +155,8 @@ class Wording:
         while factors and factors[0] == -1:
             sign = "" if sign else "-"
             factors.pop(0)
+        if factors and _is_reciprocal(factors[0]):  # F/s, where 1/s*F stands; one half may lead
+            factors.sort(key=_is_reciprocal)
         written = ""
         for factor in factors:
             below = _divisor(factor)
@@ -193,6 +197,10 @@ def _flat(expression: Any, kind: type[Basic]) -> list[Any]:
     if not isinstance(expression, kind):
         return [expression]
     return [part for argument in expression.args for part in _flat(argument, kind)]
+
+
+def _is_reciprocal(factor: Any) -> bool:
+    return isinstance(factor, Pow) and _divisor(factor) is not None
 
 
 def _divisor(factor: Any) -> Expr | None:

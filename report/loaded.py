@@ -16,7 +16,7 @@ from .cells.address import index_text
 from .cells.values import CODES
 from .column import Column
 from .inputs.folders import report_folder
-from .messages.errors import LoopsheetError
+from .messages.errors import LoopsheetError, suggest
 from .quantity import behind
 from .result.findings import checks
 from .study import Study
@@ -136,11 +136,12 @@ class Loaded(Mapping[str, Estimates]):
         Raises
         ------
         KeyError
-            With the names there are.
+            With the nearest name and all there are.
         """
         report = self._report
         if name not in report.sheet:
-            raise KeyError(f"no quantity '{name}': there are {', '.join(self)}")
+            instead = suggest(name, self)
+            raise KeyError(f"no quantity '{name}': {instead and instead + ' '}there are {', '.join(self)}")
         column, how = report.sheet[name], report.shown[name]
         cells = list(report.values.cells(name))
         shape = () if column.axis is None else (len(cells),)

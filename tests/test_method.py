@@ -475,6 +475,8 @@ def test_a_report_is_loaded(tmp_path: Path) -> None:
     assert mean_alpha.texts[0] in repr(found)
     with pytest.raises(KeyError, match="no quantity 'q': there are v, e, x_p"):
         found["q"]
+    with pytest.raises(KeyError, match="no quantity 'alhpa': did you mean 'alpha'\\? there are v, e"):
+        found["alhpa"]
 
 
 def sheet_names(folder: Path) -> list[str]:
