@@ -31,6 +31,7 @@ from sympy import (
     atan,
     atanh,
     beta,
+    betainc,
     ceiling,
     cos,
     cosh,
@@ -55,6 +56,7 @@ from sympy import (
     simplify,
     sin,
     sinh,
+    sqrt,
     tan,
     tanh,
     together,
@@ -214,16 +216,25 @@ def _of_power(term: Expr, variable: Expr, low: Expr, high: Expr) -> Expr | None:
 
 
 def _of_euler(inner: Expr, variable: Expr, low: Expr, high: Expr, outer: Expr) -> Expr | None:
-    """Integrate a factor times y^a (1 - y^m)^b, a > -1, b > -1, from 0 to 1 (DLMF 5.12.1, with y^m for t)."""
-    a, m, b = (Wild(name, exclude=[variable]) for name in "amb")
-    found = inner.match(variable**a * (1 - variable**m) ** b)
+    """Integrate a factor times y^a (1 - z y^m)^b, a > -1, b > -1, 0 < z <= 1, from 0 to 1, with t for z y^m.
+
+    DLMF 5.12.1, and 8.17.1 up to z; above 1 neither side is a real number. The circle's 1/sqrt(1 - y^2) from
+    elsewhere up to 1 is the arc's cosine (DLMF 4.23.2).
+    """
+    if high == 1 and low != 0 and inner == 1 / sqrt(1 - variable**2):
+        return outer * acos(low)
+    a, m, b, z = (Wild(name, exclude=[variable]) for name in "ambz")
+    found = inner.match(variable**a * (1 - z * variable**m) ** b)
     if (
         found is None
         or (low, high) != (0, 1)
-        or not all(positive.xreplace(found).is_positive for positive in (a + 1, b + 1, m))
+        or not all(positive.xreplace(found).is_positive for positive in (a + 1, b + 1, m, z))
     ):
         return None
-    return outer * beta((found[a] + 1) / found[m], found[b] + 1) / found[m]
+    share = (found[a] + 1) / found[m]
+    if found[z] == 1:
+        return outer * beta(share, found[b] + 1) / found[m]
+    return outer * betainc(share, found[b] + 1, 0, found[z]) * found[z] ** -share / found[m]
 
 
 def _powers(expression: Expr) -> Expr:

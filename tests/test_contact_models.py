@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.stats import chi2
-from sympy import Expr, Integral, Rational, Symbol, beta, lambdify, sqrt
+from sympy import Expr, Integral, Rational, Symbol, acos, beta, lambdify, sqrt
 
 import loopsheet
 from loopsheet.derivations import soft_impact as paper
@@ -77,7 +77,7 @@ def wrong() -> Iterator[tuple[str, Any]]:
         "(L139)": (2, Rational(1, 4)), "(L142)": (2, Rational(1, 2)), "(L143)": (2, Rational(1, 2)),
         "(L144)": (2,), "(L145)": (2, Rational(5, 3)), "(L146)": (2, Rational(4, 5)), "(L147)": (2,),
         "(L151)": (Rational(3, 2),), "(L153)": (2,), "(L154)": (3,), "(L155)": (2,),
-        "(L156)": (2,), "(L157)": (Rational(25, 108), 2), "(L158)": (2,),
+        "(L156)": (2,), "(L157)": (Rational(25, 108), 2), "(L158)": (2,), "(L167)": (2,),
         "(L161)": (2,), "(L165)": (2, Rational(8, 5)), "(L179)": (-1, Rational(3, 2)), "(L188)": (2,),
     }.items():  # fmt: skip
         for factor in factors:
@@ -93,6 +93,19 @@ def test_a_wrong_variant_is_refuted(label: str, factor: Any) -> None:
     found = check_step(replace(derivation.steps[-1], claim=slipped), LEDGER.vocabulary)
     assert found.status is ProofStatus.REFUTED
     assert found.counterexample
+
+
+def test_another_place_of_the_cut_is_refuted() -> None:
+    """The spring beyond it would be at rest at a third of its approach, not at none of it."""
+    derivation = LEDGER.derivation(LEDGER["(L167)"])
+    assert derivation is not None
+    (step,) = derivation.steps
+    elsewhere = acos(thornton.x_y / thornton.x_m)
+    members = tuple(side.replace(acos, lambda place: elsewhere) for side in step.claim.members)
+    slipped = replace(step.claim, members=members)
+    assert slipped != step.claim
+    found = check_step(replace(step, claim=slipped), LEDGER.vocabulary)
+    assert found.status is ProofStatus.REFUTED
 
 
 # --- digits of others -------------------------------------------------------------------------------------
@@ -607,13 +620,23 @@ def test_exponents_by_restitutions_follow_from_synthetic_ones() -> None:
     [(0, Rational(5, 2), Rational(-1, 2)), (Rational(3, 2), 2, Rational(1, 2)), (0, 2, Rational(-1, 2)),
      (Rational(-1, 3), Rational(7, 3), Rational(3, 4))],
 )  # fmt: skip
-def test_shares_of_a_way_are_summed_as_by_numbers(a: Expr, m: Expr, b: Expr) -> None:
-    share = Symbol("r", positive=True)
-    closed = in_powers(Integral(share**a * (1 - share**m) ** b, (share, 0, 1)))
+@pytest.mark.parametrize("gone", [1, Rational(2, 3), Rational(1, 100)])
+def test_shares_of_a_way_are_summed_as_by_numbers(a: Expr, m: Expr, b: Expr, gone: Any) -> None:
+    """`gone`: how much of the energy is gone at the end."""
+    share, part = Symbol("r", positive=True), Symbol("z", positive=True)
+    way = share**a * (1 - (gone if gone == 1 else part) * share**m) ** b
+    closed = in_powers(Integral(way, (share, 0, 1)))
     assert closed is not None
     with mpmath.workdps(60):  # an end where the rate is zero costs half of the digits
-        summed = mpmath.quad(lambdify(share, share**a * (1 - share**m) ** b, "mpmath"), [0, 0.5, 1])
-        assert abs(closed.evalf(40) / summed - 1) < 1e-20
+        summed = mpmath.quad(lambdify(share, way.subs(part, gone), "mpmath"), [0, 0.5, 1])
+        assert abs(closed.subs(part, gone).evalf(40) / summed - 1) < 1e-20
+
+
+def test_the_rest_of_a_spring_s_way_is_an_arc() -> None:
+    share, begun = Symbol("r", positive=True), Symbol("s", positive=True)
+    rest = Integral(1 / sqrt(1 - share**2), (share, begun, 1))
+    assert in_powers(rest) == acos(begun)
+    assert in_powers(Integral(rest.function, (share, begun, 2))) is None
 
 
 def test_what_is_no_share_of_a_way_is_not_summed_so() -> None:

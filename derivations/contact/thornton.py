@@ -37,6 +37,9 @@ OWN = (
         "a_thornton", "greatest radius of the contact by Thornton", "m", r"a_{\mathrm{T}%s}", (1e-4, 1e-3)
     ),
     Quantity("delta_thornton", "elastic recovery by Thornton", "m", r"\delta_{\mathrm{T}%s}", (1e-6, 1e-4)),
+    Quantity(
+        "s_y", "where the pressure is cut off, on the way of the spring beyond", "1", "s_{y%s}", (0.01, 0.9)
+    ),
     Quantity("F_thornton", "force by Thornton", "N", r"F_{\mathrm{T}%s}", (1.0, 5000.0)),
     Quantity("F_y", "force where the pressure is cut off", "N", r"F_{y%s}", (0.1, 1000.0)),
     Quantity("x_m_thornton", "maximum approach by Thornton", "m", r"x_{m,\mathrm{T}%s}", (1e-5, 1e-4)),
@@ -47,10 +50,10 @@ OWN = (
 )
 _WORDS = Vocabulary(*SHARED.values(), *hertz.OWN, *johnson.YIELD_WORDS, *OWN)
 v, e, m_red, x = SHARED.plain("v e m_red x")
-E_star, R, K, any_a, any_delta, F_m = SHARED.plain("E_star R_b K a_c delta F_m")
+E_star, R, K, any_a, any_delta, F_m, r = SHARED.plain("E_star R_b K a_c delta F_m r")
 x_Y, p_Y, v_Y = _WORDS.plain("x_Y p_Y v_Y")
-a, delta, share, alone, p_y, x_y, V_y, F, F_y, x_m, peak, t, e_T, x_p = _WORDS.plain(
-    "a_thornton delta_thornton r_Y_alone p_y_alone p_y x_y V_y F_thornton F_y x_m_thornton F_m_thornton "
+a, delta, share, alone, p_y, x_y, V_y, place, F, F_y, x_m, peak, t, e_T, x_p = _WORDS.plain(
+    "a_thornton delta_thornton r_Y_alone p_y_alone p_y x_y V_y s_y F_thornton F_y x_m_thornton F_m_thornton "
     "t_thornton e_thornton x_p_thornton"
 )
 half = hertz.half
@@ -148,14 +151,30 @@ with evaluate(False):
 
     # Up to the limit the rate falls as sqrt(1 - (V_y/v)^2 (x/x_y)^(5/2)); beyond it the contact is a spring
     # that would be at rest at x_y/3, and back it goes as a power.
-    lasting = define(
+    cut_at = define("", place, 2 * x_y / (3 * x_m - x_y), "beginning of the spring's way")
+    way = Equation(
         "",
-        t,
-        _part * x_y / v * (v / V_y) ** Rational(4, 5) * betainc(_part, half, 0, (V_y / v) ** 2)
-        + sqrt(m_red / (pi * R * p_y)) * acos(2 * x_y / (3 * x_m - x_y))
-        + (x_m - x_p) / (e_T * v) * hertz.lasts(hertz.hertz),
-        "duration of the contact by Thornton",
-        "the way of each branch divided by its rate, summed (DLMF 5.12.1 and 8.17.1)",
+        (
+            t,
+            x_y / v * Integral(1 / sqrt(1 - (V_y / v) ** 2 * r ** (hertz.hertz + 1)), (r, 0, 1))
+            + sqrt(m_red / (pi * R * p_y)) * Integral(1 / sqrt(1 - r**2), (r, place, 1))
+            + (x_m - x_p) / (e_T * v) * hertz.passing(hertz.hertz),
+        ),
+        "the way of each branch over its rate, which the energy that is left tells",
+        Kind.ASSUMPTION,
+        "shares of the way: duration by Thornton",
+    )
+    lasting = Equation(
+        "(L167)",
+        (
+            t,
+            _part * x_y / v * (v / V_y) ** Rational(4, 5) * betainc(_part, half, 0, (V_y / v) ** 2)
+            + sqrt(m_red / (pi * R * p_y)) * acos(2 * x_y / (3 * x_m - x_y))
+            + (x_m - x_p) / (e_T * v) * hertz.lasts(hertz.hertz),
+        ),
+        "the shares of the way summed, by Euler's beta functions (DLMF 5.12.1 and 8.17.1)",
+        title="duration of the contact by Thornton",
+        conditions=(x_m > x_y,),
     )
 
     def _by_cases(part: str, beyond: Equation, elastic: Expr, faster: Rel = x_m > x_y) -> Equation:
@@ -243,6 +262,7 @@ THORNTON = ContactModel(
             (share, V_y, x_y),
             "Solve both for the pressure.",
         ),
+        Derivation.of(lasting, (way, cut_at), (t, place), "Sum the shares of the way."),
         *CASES,
         *_entries,
     ),
