@@ -327,6 +327,15 @@ def test_tests_slower_than_first_yield_have_a_mark(tmp_path: Path) -> None:
     assert [mark for name in ("v_over_Y", "p_y", "e_johnson") for mark in sound.marks.of(name) if mark] == []
 
 
+def test_what_is_said_of_first_yield_is_true_of_other_bodies_and_without_an_imprint(tmp_path: Path) -> None:
+    report = changed(tmp_path, "; ".join((*ALL[:2], "0.010,1.000,"))).computed
+    assert [bool(mark) for mark in report.marks.of("v_over_Y")] == [False, False, True]
+    said = words_of(shipped_page())  # of a target that may be a ball, too, and of any metal
+    assert "ball and a plane" not in said
+    assert "steel" not in WORKBOOK.told["daily_life"]
+    assert "is not has a mark: if it left one all the same, it contradicts the yield strength" in said
+
+
 def test_the_yield_strength_may_be_left_out(tmp_path: Path) -> None:
     study = changed(tmp_path, leave="sigma_Y")
     assert {"v_Y", "v_over_Y", "sigma_Y"}.isdisjoint(study.computed.sheet.by_name)

@@ -222,8 +222,8 @@ _QUOTED = {
     "high.",
     "indentation": "Plastic indentations have from 2 to 2.5 by Tabor, and none more than 3.",
     "daily_life": "The paper quotes impacts of 10⁻⁴ s to 10⁻³ s, with 10³ to 10⁴ times the acceleration of "
-    f"gravity, {_GRAVITY:.2f} m/s²: those of daily life, while a ball of steel on steel is in contact for a "
-    "shorter time ({table}`durations`).",
+    f"gravity, {_GRAVITY:.2f} m/s²: those of daily life. How long these tests are in contact, by each model, "
+    "is in {table}`durations`.",
 }
 """What sources say of impacts in general, by where the narrative says it."""
 
