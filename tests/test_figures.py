@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -23,6 +24,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+import loopsheet
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
@@ -331,3 +333,18 @@ def test_the_loops_are_told_apart_without_colour(report_of: Callable[..., Report
     greys = [luminance(line.get_color()) for line in axes.lines[:5]]
     assert (np.diff(greys) > 0).all()
     assert all(1.05 / (grey + 0.05) >= 3 for grey in greys)
+
+
+def test_lines_of_tests_at_one_speed_are_seen(tmp_path: Path) -> None:
+    """They lead nowhere to the side: they have dots. What has no value has no place in a legend of panels."""
+    shipped = Path(loopsheet.__file__).parent / "data" / "contact_models"
+    shutil.copy(shipped / "report.toml", tmp_path)
+    rows = ("test,v [m/s],e [1],x_p [um]", "1,2.0,0.55,40.0", "2,2.0,0.54,41.0\n")
+    (tmp_path / "measurements.csv").write_text("\n".join(rows))
+    report = Study(tmp_path).computed
+    (axes,) = figures.draw(report, "imprints").axes
+    assert [line.get_marker() for line in axes.lines] == ["."] * 3
+    (of_all,) = figures.draw(Study(shipped).computed, "imprints").axes
+    assert [line.get_marker() for line in of_all.lines] == ["None"] * 4
+    (legend,) = figures.draw(report, "loops").legends
+    assert "law (3) of the paper" not in {text.get_text() for text in legend.get_texts()}

@@ -218,7 +218,7 @@ def _panels(words: Words, chart: Chart, units: list[str], found: list[list[Trace
         for series, own in zip(chart.series, found, strict=True):
             for trace in own:
                 if tuple(trace.labels[0]) == row:
-                    panel.plot(*trace.at, color=series.colour, lw=1.2)
+                    _line(panel, trace.at, series.colour, 1.2)
     for panel in spare:
         panel.remove()
     for panel in panels[-across:]:  # above a place that stays empty, too
@@ -227,10 +227,15 @@ def _panels(words: Words, chart: Chart, units: list[str], found: list[list[Trace
         panels[0].set(xlim=(0, None), ylim=(0, None))
     for axis, scale, unit in zip("xy", words.scales(chart), units, strict=True):
         getattr(figure, f"sup{axis}label")(mathtext(scale.titled(unit)), fontsize=9)
-    keys = {mathtext(words.label(series)): series.colour for series in chart.series}
+    keys = {mathtext(words.label(s)): s.colour for s, own in zip(chart.series, found, strict=True) if own}
     handles = [Line2D([], [], color=colour, label=label) for label, colour in keys.items()]
     figure.legend(handles=handles, loc="outside upper left", ncols=3, handlelength=1.5, columnspacing=1)
     return figure
+
+
+def _line(axes: Axes, at: Array, colour: str, width: float) -> None:
+    """Draw a line; one that leads nowhere to the side, as of a single point, has dots, too."""
+    axes.plot(*at, color=colour, lw=width, zorder=2.5, marker="None" if np.ptp(at[0]) else ".", ms=4)
 
 
 def mathtext(letters: Letters) -> str:
@@ -415,7 +420,7 @@ class _Picture:
 
     def line(self, at: Array, colour: str, width: float) -> None:
         """Draw a line and keep texts off it."""
-        self.axes.plot(*at, color=colour, lw=width, zorder=2.5)
+        _line(self.axes, at, colour, width)
         self.taken.append((at, 1.0))
 
     def level(self, series: Series) -> None:

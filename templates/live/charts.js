@@ -62,7 +62,7 @@ function drawPanels({ height, log, panels }, series, own, ghosts, { ends }, titl
   const named = new Map(own.flat().map(([{ row, name }]) => [name, row])), rows = [...named.keys()].sort((a, b) => named.get(a) - named.get(b));
   const shown = evenly(rows.length, MOST_PANELS).map((n) => rows[n]), across = Math.min(shown.length, IN_A_ROW);
   const keys = new Map(), width = WIDTH / across, legend = draw("g", {});
-  for (const { label, colour } of series) keys.set(plainOf(label), { mark: mark("M0 0h13", { stroke: colour, "stroke-width": 1.4 }), text: label });
+  series.forEach(({ label, colour }, n) => own[n].length && keys.set(plainOf(label), { mark: mark("M0 0h13", { stroke: colour, "stroke-width": 1.4 }), text: label }));
   if (ghosts.flat().length) keys.set("", { mark: mark("M0 0h13", { stroke: GHOST, "stroke-width": 2 }), text: [["", "as issued"]] });
   const top = Picture.prototype.key.call({ svg: legend }, [...keys.values()]) + 11;
   const svg = canvas(WIDTH, top + Math.ceil(shown.length / across) * height);
@@ -70,8 +70,8 @@ function drawPanels({ height, log, panels }, series, own, ghosts, { ends }, titl
     const picture = new Picture({ height, log, width, small: true }, ends, titled(["", `${panels} ${row}: `]), 14);
     for (const way of ghosts.flat()) if (way[0].name === row) picture.line(way, GHOST, 1);
     own.forEach((ways, of) => ways.forEach((way) => way[0].name === row && picture.line(way, series[of].colour, 1.2)));
-    const at = [(n % across) * width, top + Math.floor(n / across) * height];
-    svg.append(draw("g", { transform: `translate(${at})` }, ...picture.svg.childNodes));
+    const transform = `translate(${(n % across) * width} ${top + Math.floor(n / across) * height})`;
+    svg.append(draw("g", { transform }, ...picture.svg.childNodes));
   });
   svg.append(legend);
   return { svg, says: `${[...keys.values()].map(({ text }) => plainOf(text)).join("; ")}.` };

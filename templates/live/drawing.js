@@ -15,7 +15,7 @@ function ticks(low, high, most) {
 }
 
 // A width that is near enough to keep texts apart.
-const textWidth = (text, size) => size * Array.from(text).reduce((sum, c) => sum + (/[ijl.,:;|' ]/.test(c) ? 0.32 : /[mwMW]/.test(c) ? 0.93 : 0.61), 0);
+const textWidth = (text, size) => size * [...text].reduce((sum, c) => sum + (/[ijl.,:;|' ]/.test(c) ? 0.32 : /[mwMW]/.test(c) ? 0.93 : 0.61), 0);
 
 // Powers of ten, if there are two between the ends.
 function logTicks(low, high, most) {
@@ -83,18 +83,23 @@ class Picture {
     );
   }
 
-  // Dots as one path, each a stroke of no length with round ends.
-  dots(points, size, colour, keepClear = true) {
-    const d = points.map(([x, y]) => `M${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}h0`).join("");
-    this.svg.append(draw("path", { d, stroke: colour, "stroke-width": size, "stroke-linecap": "round", fill: "none" }));
-    if (keepClear) for (const [x, y] of points) this.avoid(this.x(x), this.y(y), 2);
+  // A path of a piece for each point, which texts keep clear of by a radius, if any.
+  path(points, piece, attributes, radius) {
+    const places = points.map(([x, y]) => [this.x(x), this.y(y)]);
+    this.svg.append(draw("path", { d: places.map(piece).join(""), fill: "none", ...attributes }));
+    if (radius) for (const [x, y] of places) this.avoid(x, y, radius);
   }
 
-  line(points, colour, width, dashes = null, keepClear = true) {
-    const d = points.map(({ at: [x, y] }, n) => `${n ? "L" : "M"}${this.x(x).toFixed(2)} ${this.y(y).toFixed(2)}`).join("");
-    const attributes = { d, stroke: colour, "stroke-width": width, fill: "none", "stroke-dasharray": dashes };
-    this.svg.append(draw("path", { ...attributes, "stroke-linejoin": "round" }));
-    if (keepClear) for (const { at: [x, y] } of points) this.avoid(this.x(x), this.y(y), 1);
+  // Dots as one path, each a stroke of no length with round ends.
+  dots(points, size, stroke, keepClear = true) {
+    this.path(points, ([x, y]) => `M${x.toFixed(1)} ${y.toFixed(1)}h0`, { stroke, "stroke-width": size, "stroke-linecap": "round" }, keepClear && 2);
+  }
+
+  // A line; one that leads nowhere to the side, as of a single point, has dots, too.
+  line(points, stroke, width, dashes = null, keepClear = true) {
+    const all = points.map(({ at }) => at), piece = ([x, y], n) => `${n ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`;
+    this.path(all, piece, { stroke, "stroke-width": width, "stroke-dasharray": dashes, "stroke-linejoin": "round" }, keepClear && 1);
+    if (all.every(([x]) => x === all[0][0])) this.dots(all, 3, stroke, false);
   }
 
   // A triangle at the edge, towards a point that is outside.
@@ -117,10 +122,8 @@ class Picture {
       const inside = box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom;
       if (!inside || this.taken.some(([a, b, c, d]) => a < box[2] && c > box[0] && b < box[3] && d > box[1])) continue;
       this.taken.push(box);
-      if (Math.max(Math.abs(dx), Math.abs(dy)) > 16) {
-        const d = `M${x} ${y}L${this.x(atX)} ${this.y(atY)}`;
-        this.svg.append(draw("path", { d, stroke: colour, "stroke-width": 0.5 }));
-      }
+      const far = Math.max(Math.abs(dx), Math.abs(dy)) > 16;
+      if (far) this.svg.append(draw("path", { d: `M${x} ${y}L${this.x(atX)} ${this.y(atY)}`, stroke: colour, "stroke-width": 0.5 }));
       this.svg.append(draw("text", { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor, "font-size": size, fill: colour }, text));
       return true;
     }
@@ -133,9 +136,8 @@ class Picture {
     for (const { mark, text } of entries) {
       const plain = plainOf(text);
       if (x > 24 && x + 19 + textWidth(plain, 8.5) > WIDTH) [x, y] = [24, y + 11];
-      const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y})` }, mark);
-      group.append(draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...lettered(text)));
-      this.svg.append(group);
+      const name = draw("text", { x: 19, y: 3.1, "font-size": 8.5 }, ...lettered(text));
+      this.svg.append(draw("g", { transform: `translate(${x.toFixed(1)} ${y})` }, mark, name));
       x += 19 + textWidth(plain, 8.5) + 16;
     }
     return y;

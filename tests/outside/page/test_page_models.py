@@ -68,6 +68,17 @@ def test_loops_of_models_follow_an_edit(live: Live, folder: Path) -> None:
     )  # in the legend
 
 
+def test_lines_of_tests_at_one_speed_are_seen(live: Live) -> None:
+    """A line that leads nowhere to the side has dots, and what is not drawn has no place in the legend."""
+    dots = live.page.locator('#figure-imprints svg > path[stroke-width="3"]:not([stroke="#c4c4c4"])')
+    for test in range(1, 6):
+        assert dots.count() == 0
+        live.type("v", str(test), "2.0")
+        live.drawn()
+    assert dots.count() == 3
+    assert "law (3)" not in live.page.locator("#figure-loops svg > g:last-of-type").text_content()
+
+
 def test_cards_that_an_edit_has_left_behind_are_struck_out(live: Live) -> None:
     def looks() -> tuple[set[str], set[str]]:
         style = "all => all.map((one) => getComputedStyle(one)['%s'])"
