@@ -32,9 +32,12 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     caption : str
         Below the figure; what its axes are, without.
     log : str
-        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``.
+        The axes with a logarithmic scale: ``x``, ``y`` or ``xy``. What is zero or below is left out there,
+        and the caption says so of columns that may be.
     """
     body = current()
+    if log not in ("", "x", "y", "xy"):
+        raise SheetError(f"log={log!r} names no axes: x, y or xy")
 
     def named(*cells: Any) -> list[Column]:
         sketched = {column.name: column for column in body.drawn}
@@ -56,6 +59,9 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     caption = caption or f"{sentence_case(said)}."
+    by_name = {column.name: column for column in (*body.columns.values(), *body.drawn)}
+    if any(not by_name[getattr(each, axis)].positive for each in series for axis in log):
+        caption += " What is zero or below has no place on a logarithmic axis."
     body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
 
 

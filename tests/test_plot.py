@@ -42,13 +42,27 @@ def test_what_is_plotted() -> None:
         ("t", "T_mean", "level"),
         ("t", "later", "line"),
     ]
-    assert (chart.log, Cooling.workbook.figures[0].caption) == ("x", "Cold.")
+    left_out = " What is zero or below has no place on a logarithmic axis."
+    assert (chart.log, Cooling.workbook.figures[0].caption) == ("x", f"Cold.{left_out}")
+
+
+def test_of_what_is_positive_nothing_is_left_out() -> None:
+    class Law(Method):
+        """A power law."""
+
+        x = measured("m", "length", positive=True)
+        F = measured("N", "force")
+        F_mean = let(mean(F), "mean force")
+        plot(x, F, F_mean, caption="By length.", log="x")
+
+    assert Law.workbook.figures[0].caption == "By length."
 
 
 @pytest.mark.parametrize(
     ("line", "said"),
     [
         ("plot(x, x**2)", "a name of the body can be shown, no formula"),
+        ("plot(x, x, log='q')", "log='q' names no axes: x, y or xy"),
         ("plot(m, x)", "m is a single number, which is no column to plot"),
     ],
 )
