@@ -138,7 +138,23 @@ def test_a_slope_of_one_sign_is_certified_for_all_inputs() -> None:
     assert not certain(1 / (w - 1) + 1, 0, 4)
     assert not certain(Piecewise((w - 1, w < 2), (w - 3, True)), 0, 4)
     assert not certain(w**2 - 3 * w + 2, 0, 4)
+    assert certain(w**3 - 12 * w, Rational(201, 100), 4)  # in parts
+    assert not certain(w**3 - 12 * w, Rational(199, 100), 4)
     assert not certain(GAS[0], *GAS[1:], T, p, unknown=V)
+
+
+def test_a_slope_of_one_sign_is_seen_by_its_factors() -> None:
+    """A damping number by the restitution that it returns, from where the bodies part as fast as they met."""
+    e = Column("e", None, Given(bounds=Bounds(low=0, high=1)))
+    lost = 1 - exp(-w)
+    form = log(1 + lost / e.symbol) + w - lost / e.symbol - lost
+    above = ((e.symbol > Rational(1, 1000), "something comes back"), (e.symbol < 1, "something is lost"))
+    ends = -log(e.symbol), 1 / e.symbol - e.symbol
+    solved = replace(column(form, *ends), requires=above)
+    assert certified(Sheet((e, solved)), solved)
+    assert not certain(form, *ends, e)  # at e = 0 there is no slope
+    wider = replace(column(form, -log(e.symbol) / 2, ends[1]), requires=above)
+    assert not certified(Sheet((e, wider)), wider)
 
 
 def test_the_exponent_of_the_paper_is_certified_and_its_claim_is_proved() -> None:

@@ -6,16 +6,37 @@ may be. Where neither sees it, every row is decided alone (:mod:`~loopsheet.repo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from sympy import Add, Expr, Mul, Piecewise, Symbol, ceiling, degree, diff, exp, false, floor, sift, sign
+from sympy import (
+    Add,
+    Expr,
+    Indexed,
+    Integer,
+    Mul,
+    Piecewise,
+    Rel,
+    Symbol,
+    ceiling,
+    degree,
+    diff,
+    exp,
+    expand,
+    factor,
+    false,
+    floor,
+    sift,
+    sign,
+    together,
+)
 from sympy.logic.boolalg import Boolean
 
 from ..column import Root
+from ..named import name_of
 from ..plan.domain import defined, typed_symbols
 from ..plan.lowering import lowered_column
 from ..plan.nodes import Leaf, Plan, RootNode, RowSum
@@ -30,6 +51,10 @@ from .roots import magnitude
 __all__ = ["certified", "enclosing", "held", "slope", "typed_form"]
 
 JUMPS = (floor, ceiling, sign, Piecewise)
+_HALVINGS, _PARTS = 16, 64
+"""How often an interval of the unknown is halved, and how many parts may be open after that."""
+_LARGEST = 200
+"""Operations of a slope that is taken apart into factors."""
 
 
 def certified(sheet: Sheet, column: Column) -> bool:
@@ -50,8 +75,11 @@ def certified(sheet: Sheet, column: Column) -> bool:
     )
     # The unknown may be called as its column is.
     named = set().union(*(each.free_symbols for each in (form, low, high, *turning))) - {node.unknown}
+    needed = _needed(column)
     cells = tuple(
-        (types.get(s, s), *_span(sheet, plan.leaves[s])) for s in plan.leaves if types.get(s, s) in named
+        (types.get(s, s), *_within(_span(sheet, leaf), needed.get(leaf.name, ())))
+        for s, leaf in plan.leaves.items()
+        if types.get(s, s) in named
     )
     return any(
         decide(form, points, node.unknown, cells)
@@ -69,6 +97,26 @@ def _span(sheet: Sheet, leaf: Leaf) -> tuple[float, float]:
         bounds = sheet.bounds[leaf.name]
         return -np.inf if bounds.low is None else bounds.low, np.inf if bounds.high is None else bounds.high
     return 0.0 if sheet[leaf.name].positive else -np.inf, np.inf
+
+
+def _needed(column: Column) -> dict[str, list[Rel]]:
+    """What a column requires of single cells: that they are above or below a number."""
+    found: dict[str, list[Rel]] = {}
+    for condition, _ in column.requires:
+        single = isinstance(condition, Rel) and isinstance(condition.lhs, (Symbol, Indexed))
+        if single and condition.rhs.is_number:
+            found.setdefault(name_of(condition.lhs), []).append(condition)
+    return found
+
+
+def _within(span: tuple[float, float], needed: Iterable[Rel]) -> tuple[float, float]:
+    low, high = span
+    for each in needed:
+        if each.rel_op in (">", ">="):
+            low = max(low, float(each.rhs))
+        elif each.rel_op in ("<", "<="):
+            high = min(high, float(each.rhs))
+    return low, high
 
 
 Cells = tuple[tuple[Symbol, float, float], ...]
@@ -102,20 +150,55 @@ def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Ce
 
 @lru_cache(maxsize=256)
 def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) -> bool:
-    """Whether the slope has one sign all over the interval, by assumptions or by intervals of arrays."""
+    """Whether the slope has one sign all over the interval, by assumptions or by intervals of arrays.
+
+    Also as a product of factors, by the way from the lower end: 1 - exp(-q)/e of q > -log(e) is 1 - exp(-s).
+    """
     low, high = ends
     plain = Symbol(unknown.name, real=True, **({"positive": True} if low.is_nonnegative else {}))
     steepness, known = slope(form.xreplace({unknown: plain}), plain)
     if known == True and (steepness.is_nonnegative or steepness.is_nonpositive):  # noqa: E712 - sympy's true
         return True
     span = {symbol: Intervals([least], [most]) for symbol, least, most in cells}
+    if _is_of_one_sign(steepness, known, plain, ends, span):
+        return True
+    if steepness.has(RowSum) or steepness.count_ops() > _LARGEST:
+        return False
+    way = Symbol(unknown.name, positive=True)
+    product = factor(together(expand(steepness.xreplace({plain: low + way}))))
+    open_ones = [
+        base
+        for each in Mul.make_args(product)
+        for base, power in (each.as_base_exp(),)
+        if not (each.is_nonnegative or each.is_nonpositive or power.is_even)
+    ]
+    continuous, whole = known.xreplace({plain: low + way}), (Integer(0), high - low)
+    return all(_is_of_one_sign(each, continuous, way, whole, span) for each in (*open_ones, Integer(1)))
+
+
+def _is_of_one_sign(
+    steepness: Expr, known: Boolean, plain: Symbol, ends: tuple[Expr, ...], span: Mapping[Symbol, Intervals]
+) -> bool:
+    """Whether a slope is, part by part: where intervals leave it open, both halves are asked."""
     try:
-        found_ends = _run([low, high], span)
-        here = Intervals(found_ends[0].low, found_ends[1].high)
-        found, sure = _run([steepness, held(known)], {**span, plain: here})
+        low, high = _run(list(ends), span)
+        parts, signs = Intervals(np.atleast_1d(low.low), np.atleast_1d(high.high)), set[bool]()
+        for _ in range(_HALVINGS):
+            found, sure = _run([steepness, held(known)], {**span, plain: parts})
+            rises, falls, sure = found.low >= 0, found.high <= 0, sure.low == 1
+            signs |= {True} if (rises & sure).any() else set()
+            signs |= {False} if (falls & ~rises & sure).any() else set()
+            left = np.broadcast_to(~((rises | falls) & sure), parts.low.shape)
+            if len(signs) > 1 or not left.any():
+                return len(signs) == 1
+            at, to = parts.low[left], parts.high[left]
+            if at.size > _PARTS or not np.isfinite([at, to]).all():
+                return False
+            middle = (at + to) / 2
+            parts = Intervals(np.concatenate([at, middle]), np.concatenate([middle, to]))
     except (KeyError, SheetError, TypeError):
         return False
-    return bool(((found.low >= 0) | (found.high <= 0)).all() and (sure.low == 1).all())
+    return False
 
 
 def _run(expressions: list[Any], span: Mapping[Symbol, Intervals]) -> list[Intervals]:

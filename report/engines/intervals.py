@@ -204,6 +204,12 @@ def _outwards(low: Any, high: Any) -> Intervals:
     return _cleaned(_below(low), _above(high))  # some end is infinite, or no number
 
 
+def _summed(low: Any, high: Any) -> Intervals:
+    """The same of sums of two doubles each: one that is zero is exact."""
+    found = _outwards(low, high)
+    return Intervals(np.where(low == 0, 0.0, found.low), np.where(high == 0, 0.0, found.high))
+
+
 def _loosely(low: Any, high: Any) -> Intervals:
     """Ends that an elementary function gave."""
     return _outwards(low - WIDER * np.abs(low), high + WIDER * np.abs(high))
@@ -268,8 +274,10 @@ def _whole_power(base: Intervals, exponent: int) -> Intervals:
 
 
 def _exp(a: Intervals) -> Intervals:
+    """On which side of 1 it lies is certain: that of zero is 1."""
     found = _loosely(*_at_ends(elementary.exp, a))
-    return Intervals(np.maximum(found.low, 0.0), found.high)
+    low = np.maximum(found.low, np.where(a.low >= 0, 1.0, 0.0))
+    return Intervals(low, np.where(a.high <= 0, np.minimum(found.high, 1.0), found.high))
 
 
 def _log(a: Intervals) -> Intervals:
@@ -337,8 +345,8 @@ def _less_equal(a: Intervals, b: Intervals) -> Intervals:
 
 
 _UFUNCS: dict[str, Callable[..., Intervals]] = {
-    "add": lambda a, b: _outwards(a.low + b.low, a.high + b.high),
-    "subtract": lambda a, b: _outwards(a.low - b.high, a.high - b.low),
+    "add": lambda a, b: _summed(a.low + b.low, a.high + b.high),
+    "subtract": lambda a, b: _summed(a.low - b.high, a.high - b.low),
     "multiply": _multiply,
     "divide": _divide,
     "power": _power,
