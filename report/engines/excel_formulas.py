@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -308,25 +310,24 @@ class Writing:
 
     def inherited(self, otherwise: str) -> str:
         """The first error among the precedents, or what stands where there is none."""
-        groups: list[tuple[list[str], str]] = []  # what must hold, and the code if it does not
+        runs: list[tuple[str, list[tuple[str, str]]]] = []  # of an axis: what must be a number, and the code
         for leaf, over in self.named:
-            given = isinstance(self.sheet[leaf.name].rule, Given)
+            given, axis = isinstance(self.sheet[leaf.name].rule, Given), "" if over is None else over.name
             if over is None:
                 address = self.address(leaf)
-                holds = f"ISNUMBER({address})"
             else:
-                # Its first row tells why: if no row has values, some cell of it is in error.
-                starts = self.layouts[over.name].starts
-                place = self.place_of(leaf)
+                starts, place = self.layouts[axis].starts, self.place_of(leaf)
                 address = place.cell(0, self.here) if starts is None else self.fill(place, starts)
-                holds = f"OR({self.number_kept(over.name)}>0,ISNUMBER({address}))"
-            code = _CODE[Status.INPUT] if given else address
-            if groups and groups[-1][1] == code:
-                groups[-1][0].append(holds)
+            if not runs or runs[-1][0] != axis:
+                runs.append((axis, []))
+            runs[-1][1].append((f"ISNUMBER({address})", _CODE[Status.INPUT] if given else address))
+        for axis, tests in reversed(runs):
+            if axis:
+                # The first row tells why: if no row has values, some cell of it is in error.
+                code = _unless(tests[:-1], tests[-1][1])
+                otherwise = f"IF({self.number_kept(axis)}>0,{otherwise},{code})"
             else:
-                groups.append(([holds], code))
-        for tests, code in reversed(groups):
-            otherwise = f"IF({_all(tests)},{otherwise},{code})"
+                otherwise = _unless(tests, otherwise)
         return otherwise
 
     # --- whole formulas
@@ -484,3 +485,10 @@ def _stretches(steps: NDArray[np.intp], near: NDArray[np.bool_]) -> Iterator[tup
 def _all(tests: list[str]) -> str:
     """That all of these hold."""
     return tests[0] if len(tests) == 1 else f"AND({','.join(tests)})" if tests else "TRUE()"
+
+
+def _unless(tests: Sequence[tuple[str, str]], otherwise: str) -> str:
+    """The code of the first test that fails, or what stands where none does."""
+    for code, some in reversed([(code, list(some)) for code, some in groupby(tests, key=itemgetter(1))]):
+        otherwise = f"IF({_all([test for test, _ in some])},{otherwise},{code})"
+    return otherwise

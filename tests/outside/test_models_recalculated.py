@@ -12,7 +12,7 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "as issued": {},
     "a digit of a restitution": {("e", 0): 0.531},
     "much of it lost": {("e", 3): 0.06},
-    "hardly any": {("e", 1): 0.9},
+    "less of it lost": {("e", 1): 0.6},
     "a yield strength and a speed": {("sigma_Y", 0): 0.5, ("v", 2): 3.9},
 }
 
