@@ -128,7 +128,11 @@ def test_the_digits_of_a_number_follow_from_its_uncertainty(value: float, u: flo
         (0.951, "1", "0.95"),
         (0.0104, "0.01", "0.010"),
         (0.0106, "0.02", "0.011"),
-        (0.0105, "0.01", "0.011"),  # the double lies above the half
+        (0.0105, "0.01", "0.011"),
+        (0.475, "0.5", "0.48"),  # a half goes up, on whichever side of it the double lies
+        (0.0475, "0.05", "0.048"),
+        (0.47499999999999987, "0.5", "0.48"),
+        (0.474999, "0.5", "0.47"),  # no half in six digits
         (2.0, "2", "2.0"),
         (5e-324, "5e-324", "4.9e-324"),
     ],

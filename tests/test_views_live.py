@@ -325,6 +325,8 @@ def test_values_and_uncertainties_are_told_as_python_does(
     dice, cases, wanted = random.Random(8), [], []
     for x in many():
         u = 10 ** dice.uniform(-9, 1) * abs(x) or dice.choice((0.104, 9.96, 0.95))
+        if dice.random() < 0.3:  # halves, and what rounding makes of them
+            u = float(f"{u:.1e}".replace("e", "5e")) * (1 + dice.randint(-9, 9) * 1e-16)
         most = dice.choice((1, 2))
         cases.append(["stated", bits(x), bits(u), most])
         wanted.append([told(figure) for figure in stated(x, u, most)])

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal, localcontext
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal, localcontext
 
 __all__ = [
     "MOST",
@@ -31,6 +31,8 @@ __all__ = [
 
 MOST = 2
 """Digits of an uncertainty, unless somebody wants fewer (JCGM 100, 7.2.6)."""
+_SURE = 6
+"""Digits of an uncertainty that are believed: what follows is of how it was computed."""
 _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
 _LEADING = 3
@@ -136,7 +138,7 @@ def last_place(value: float, u: float, digits: int, most: int = MOST) -> int:
     return 0 if 0 < place <= _BEYOND else place
 
 
-def _round(value: float, digits: int, rounding: str = ROUND_HALF_EVEN) -> Decimal:
+def _round(value: float | Decimal, digits: int, rounding: str = ROUND_HALF_EVEN) -> Decimal:
     """The exact value of a double with significant digits."""
     with localcontext(Context(prec=digits, rounding=rounding)) as context:
         return context.plus(Decimal(value))
@@ -146,9 +148,10 @@ def _told(u: float, most: int) -> tuple[Decimal, int]:
     """An uncertainty as it is told, and the power of ten of its last digit.
 
     Rounded, but up where rounding would make it smaller by more than a twentieth (JCGM 100, 7.2.6; EA-4/02,
-    6.3).
+    6.3). A half goes up, as in spreadsheets: an uncertainty is rather told larger. Whether it is one, the
+    digits say that are believed; on which side of it the double lies, its last bit does.
     """
-    short = _round(u, most)
+    short = _round(_round(u, _SURE), most, ROUND_HALF_UP)
     if short < Decimal(u) * Decimal("0.95"):
         short = _round(u, most, ROUND_CEILING)
     return short, short.adjusted() - most + 1

@@ -112,16 +112,12 @@ function rounded(value, place, scientific = null) {
   return figureOf((value < 0 ? "-" : "") + (all[0] ?? 0) + rest, Number(first));
 }
 
-// An uncertainty as it is told: its digits, and the power of ten of the last. Rounded, but up where rounding would make
-// it smaller by more than a twentieth (JCGM 100, 7.2.6).
+// An uncertainty as it is told: its digits, and the power of ten of the last. Rounded, halves of the six digits that are
+// believed up; and up where rounding would make it smaller by more than a twentieth (JCGM 100, 7.2.6).
 function told(u, most = 2) {
-  let { digits, first } = significant(u, most);
-  if (Number(`${digits}e${first - most + 1}`) < 0.95 * u) {
-    digits = String(Number(digits) + 1);
-    first += digits.length - most;
-    digits = digits.slice(0, most);
-  }
-  return { digits, place: first - most + 1 };
+  const { digits, first } = significant(u, 6), short = Math.round(digits / 10 ** (6 - most));
+  const text = String(short + (Number(`${short}e${first - most + 1}`) < 0.95 * u)), place = first - 2 * most + 1 + text.length;
+  return { digits: text.slice(0, most), place };
 }
 
 // The power of ten of the last digit that is shown of a number: that of its uncertainty, if that is known; of what is
