@@ -1,6 +1,6 @@
 // The formula bar: what a number is, where it comes from, and what is computed from it.
 
-const bar = { name: null, index: "", open: true, hint: byId("bar-hint").textContent };
+const bar = { name: "", index: "", open: true, hint: byId("bar-hint").textContent };
 const MOST_BUTTONS = 12, MOST_SOURCES = 6;
 
 function showCell(name, index) {
@@ -12,18 +12,18 @@ function showCell(name, index) {
 }
 
 function hideCell() {
-  bar.name = null;
+  bar.name = "";
   writeBar(page.look);
 }
 
 function writeBar(look) {
-  const box = byId("formula-bar"), { name, index } = bar, row = name === null ? -1 : look.trace.row(name, index);
-  box.dataset.cell = name ?? "";
+  const box = byId("formula-bar"), { name, index } = bar, row = look.trace.row(name, index);
+  box.dataset.cell = name;
   box.dataset.index = index;
   byId("bar-hint").hidden = row >= 0;
   byId("bar-cell").hidden = row < 0;
   for (const id of ["reason", "sure", "draws", "source", "put", "precedents", "dependents"]) byId(`bar-${id}`).hidden = true;
-  byId("bar-hint").textContent = name === null ? bar.hint : row >= 0 ? "" : `${name}[${index}] has no place in the sheet now: its ${beneath(look.trace.declared[name].axis)?.row} is left out or removed.`;
+  byId("bar-hint").textContent = !name ? bar.hint : row >= 0 ? "" : `${name}[${index}] has no place in the sheet now: its ${beneath(look.trace.declared[name].axis)?.row} is left out or removed.`;
   if (row >= 0) fillBar(look, name, row, index);
   markCells(look, name, row, index);
 }
@@ -49,21 +49,21 @@ function fillBar(look, name, row, index) {
 
 // Its uncertainty and what most of it comes from.
 function fillSure(look, name, row) {
-  const known = sureOf(look, name, row), { kept, unit, doubt } = LIVE.columns[name];
+  const known = sureOf(look, name, row), { kept, doubt } = LIVE.columns[name];
   if (!known) {
-    const lacking = LIVE.shared && row >= 0 && look.sure.lacking(name, row);
+    const lacking = LIVE.shared && look.sure.lacking(name, row);
     const told = lacking ? `its uncertainty is ${lacking}` : LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
     if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
     return;
   }
-  const [, u, factor, expanded] = known.texts, behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
+  const [, u, factor, expanded] = known.texts;
   const from = estimates(look, known.from).slice(0, MOST_SOURCES).map(({ called, rows, share, goto }) => {
     const bar = make("i", { class: "share" });
     bar.style.width = `${Math.round(60 * Math.abs(share))}px`;
     return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), `${rows} ${percent(share)} `, bar);
   });
-  const wide = expanded ? [`, U = ${expanded}`, ...behind(), ` with k = ${factor} for 95\u00a0%`, ...(doubt ? [`; ${doubt}`] : [])] : [];
-  fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}`, ...behind(), ...wide, ...from);
+  const wide = expanded ? [`, U = ${expanded}`, ...behind(name), ` with k = ${factor} for 95\u00a0%`, doubt ? `; ${doubt}` : ""] : [];
+  fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}`, ...behind(name), ...wide, ...from);
 }
 
 function fillLine(id, ...nodes) {
@@ -73,12 +73,12 @@ function fillLine(id, ...nodes) {
 
 // All digits, in the unit of the report; a given number as it was printed.
 function fullValue(look, name, row) {
-  const { scale, zero, given, unit } = LIVE.columns[name], { texts } = look.column(name);
+  const { scale, zero, given } = LIVE.columns[name], { texts } = look.column(name);
   if (!look.trace.isOk(name, row)) return [make("span", { class: "error" }, CODES[look.trace.sheet.status[name][row]])];
   const text = given ? texts[row] : repr((look.trace.sheet.value[name][row] - zero) / scale).replace(/\.0$/, "");
   const [mantissa, power] = text.split("e");
   const shown = (power === undefined || given ? text : `${mantissa} × 10${raised(Number(power))}`).replace("-", MINUS);
-  return unit === "1" ? [shown] : [`${shown}\u00a0`, ...part(name, "unit")];
+  return [shown, ...behind(name)];
 }
 
 // The articles of the equations, by number: where what is known of them stands.

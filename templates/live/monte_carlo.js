@@ -12,8 +12,7 @@ const draws = (look, name, row) => LIVE.shared && row >= 0 && look.trace.isOk(na
 // Every cell that is to be drawn: after an edit the results, and the one in the bar.
 function cellsToDraw(look) {
   const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map(([name, index]) => [name, look.trace.row(name, index)]) : [];
-  const own = bar.name === null ? [] : [[bar.name, look.trace.row(bar.name, bar.index)]];
-  return [...results, ...own].filter(([name, row]) => draws(look, name, row));
+  return [...results, [bar.name, look.trace.row(bar.name, bar.index)]].filter(([name, row]) => draws(look, name, row));
 }
 
 // Draws what was not drawn yet, soon; what was begun for another state ends.
@@ -81,19 +80,16 @@ function rangeOf(name, { u, ends }) {
 
 // Below the first order of the cell in the bar.
 function fillDraws(look) {
-  const { name, index } = bar, row = name === null ? -1 : look.trace.row(name, index);
+  const { name, index } = bar, row = look.trace.row(name, index);
   byId("bar-draws").hidden = true;
   if (!draws(look, name, row)) return;
-  const found = carlo.found[[name, row]], { unit, scale } = LIVE.columns[name], says = make("span", { class: "says" }, `${DRAWS} draws`);
-  const behind = () => (unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
-  if (carlo.refused) fillLine("bar-draws", says, "this browser lets no page draw in the background");
-  if (carlo.refused) return;
-  if (!found) {
-    fillLine("bar-draws", says, "…");
+  const found = carlo.found[[name, row]], { scale } = LIVE.columns[name], says = make("span", { class: "says" }, `${DRAWS} draws`);
+  if (carlo.refused || !found) {
+    fillLine("bar-draws", says, carlo.refused ? "this browser lets no page draw in the background" : "…");
     return;
   }
-  const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind()] : ["tails too long for u"];
-  words.push(...(ends ? [`, 95\u00a0% in ${rangeOf(name, found)}`, ...behind()] : [", too many without a value for an interval"]));
+  const { lost, u, ends } = found, words = u >= 0 ? ["u = ", figureText(stated(0, u / scale, LIVE.most)[1]), ...behind(name)] : ["tails too long for u"];
+  words.push(...(ends ? [`, 95\u00a0% in ${rangeOf(name, found)}`, ...behind(name)] : [", too many without a value for an interval"]));
   fillLine("bar-draws", says, make("span", {}, ...words, lost ? `; ${lost} without a value over these rows` : ""));
   furnished(byId("bar-draws"), { "data-lost": lost, "data-u": u, "data-ends": ends ?? "" }, []);
 }
@@ -104,6 +100,3 @@ function shortDraws(name, row) {
   if (!found) return carlo.refused || !draws(page.look, name, row) ? "–" : "…";
   return found.ends ? rangeOf(name, found) : `${found.lost} of ${DRAWS} draws without a value`;
 }
-
-// Whether draws tell another standard uncertainty of a result than the first order does.
-const isOff = (look, name, row) => Math.abs(carlo.found[[name, row]]?.u / look.sure.u(name, row) - 1) > OFF;

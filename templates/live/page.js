@@ -68,6 +68,9 @@ function part(name, what) {
   return found ? Array.from(found.cloneNode(true).childNodes) : [];
 }
 
+// Its unit, as it stands behind a number.
+const behind = (name) => (LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")]);
+
 const meaningOf = (name) => part(name, "meaning").map((node) => node.textContent).join("");
 
 // Makes an element what another one is, keeping every element that stays, for one may have the focus.

@@ -21,8 +21,9 @@ function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.map(([name, index], place) => {
     const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
-    const second = LIVE.shared && (LIVE.columns[name].kept || isOff(look, name, row)), u = LIVE.shared && !second && row >= 0 ? look.sure.u(name, row) / LIVE.columns[name].scale : NaN;
-    const more = isEdited() && LIVE.shared && row >= 0 && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
+    // Draws may tell another standard uncertainty than the first order does, or none.
+    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], off = drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF), second = live && (LIVE.columns[name].kept || off), u = live && !second ? look.sure.u(name, row) / LIVE.columns[name].scale : NaN;
+    const more = live && isEdited() && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
     const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
       make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
@@ -75,8 +76,9 @@ function makeAround() {
   });
   for (const list of all("main .decided")) parts.push([list, "decision"]);
   for (const legend of all("main .legend")) if (legend.textContent.includes("Stated uncertainties:")) parts.push([legend, "list of stated uncertainties"]);
+  if (LIVE.shared) for (const first of all(".headline, #uncertain > :first-child")) parts.push([first]);
   page.stale = parts.map(([place, what]) => {
-    const word = make("p", { class: "stale", hidden: true }, `This ${what} is as issued, before the edits.`);
+    const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "After edits U is of first order: a build says where second order counts.");
     place.after(word);
     return word;
   });

@@ -114,7 +114,7 @@ const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
 // Value, u, k and U of a cell, as texts, and its budget; nothing where there is none.
 function sureOf(look, name, row) {
   const { scale, zero, kept } = LIVE.columns[name];
-  const sure = LIVE.shared && !kept?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
+  const sure = LIVE.shared && row >= 0 && !kept?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
   if (!(sure > 0 && sure < Infinity)) return null;
   const { u, factor, from } = look.sure.budget(name, row), value = (look.trace.sheet.value[name][row] - zero) / scale;
   const of = (width) => stated(value, width / scale, LIVE.most).map(figureText), known = factor > 0;
@@ -125,7 +125,7 @@ function sureOf(look, name, row) {
 function writeUncertain(look) {
   for (const line of LIVE.shared ? all("#uncertain tbody tr") : []) {
     const [, name, index = ""] = ADDRESS.exec(line.cells[0].textContent), row = look.trace.row(name, index);
-    const known = row >= 0 && sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
+    const known = sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
     const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
     const lacking = row >= 0 && !known && look.sure.lacking(name, row);
@@ -133,9 +133,8 @@ function writeUncertain(look) {
     line.cells[6].replaceChildren(...lacking ? [lacking] : most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
   }
   for (const told of all(".headline .sure")) {
-    const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), known = LIVE.shared && row >= 0 && sureOf(look, name, row);
-    const unit = LIVE.columns[name].unit === "1" ? [] : ["\u00a0", ...part(name, "unit")], [, , factor, wide] = known ? known.texts : [];
-    told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...unit, ` (k\u00a0=\u00a0${factor})`] : []));
+    const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, [, , factor, wide] = sureOf(look, name, look.trace.row(name, index))?.texts ?? [];
+    told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...behind(name), ` (k\u00a0=\u00a0${factor})`] : []));
   }
 }
 

@@ -104,7 +104,7 @@ _AROUND = """() => {
   const all = (selector) => Array.from(document.querySelectorAll(selector), text);
   const missing = document.getElementById("missing");
   return [...all("#published tbody tr"), ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
-    ...all("#result > p").filter((text) => !/#[A-Z]+!|no value: /.test(text)),
+    ...all("#result > p:not(.stale)").filter((text) => !/#[A-Z]+!|no value: /.test(text)),
     ...all(".headline dd"), ...all("#published > ul > li")];
 }"""
 

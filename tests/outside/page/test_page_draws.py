@@ -100,6 +100,17 @@ def test_the_panel_has_the_interval_of_every_result(live: Live) -> None:
         assert low < high
 
 
+def test_the_panel_has_no_first_order_where_tails_are_too_long_for_u(live: Live) -> None:
+    """Coarse depths: the coefficient goes over decades."""
+    for test, depth in enumerate(("23", "30", "40", "20", "40"), start=1):
+        live.type("x_p", test, depth)
+    row = live.page.locator("#live-panel tbody tr").nth(1)
+    row.get_by_text("…", exact=False).filter(has_text=re.compile(r"\d … \d")).wait_for()
+    assert "second order" in row.inner_text()
+    live.page.locator('[data-cell="C_eiv"]').first.click()
+    live.page.wait_for_selector('#bar-draws[data-u="NaN"]')
+
+
 def test_the_same_edit_draws_the_same(open_page: Open) -> None:
     pages = open_page(own=True), open_page(own=True)
     for live in pages:

@@ -172,6 +172,15 @@ def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
     assert [word.is_visible() for word in words.all()] == [False] * 3
 
 
+def test_an_edited_page_says_that_its_expanded_uncertainties_are_of_first_order(live: Live) -> None:
+    words = live.page.get_by_text("After edits U is of first order: a build says where second order counts.")
+    assert [word.is_visible() for word in words.all()] == [False] * 2
+    live.type("x_p", 2, "29.8")
+    assert [word.is_visible() for word in words.all()] == [True] * 2
+    below = live.page.locator(".headline + .stale, #uncertain > .stale").all()
+    assert [word.text_content() for word in below] == words.all_text_contents()
+
+
 _BLANK_OR_NEW = """async (selector) => {
   const input = document.getElementById("cell-x_p-2"), picture = document.querySelector(selector), seen = [];
   const drawn = (svg) => Array.from(svg.querySelectorAll("path"), (path) => path.getAttribute("d")).join();
