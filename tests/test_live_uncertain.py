@@ -17,6 +17,7 @@ import test_order
 from test_digits import CAMPAIGNS
 
 from loopsheet.report import stages
+from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
 from loopsheet.report.engines.javascript import RUNTIME
 from loopsheet.report.inputs.folders import PAPER
@@ -121,6 +122,29 @@ def test_as_issued(told: Told, tmp_path: Path, name: str) -> None:
             np.testing.assert_allclose(
                 mine, own, rtol=1e-4, atol=(0.01 if twice else 1e-6) * np.abs(own).max()
             )
+
+
+def test_what_bends_as_issued_has_the_digits_of_its_first_order_far_away(told: Told, tmp_path: Path) -> None:
+    """A sum of squares of errors alone, which is of second order, and one of a test that is far off."""
+    texts = {}
+    for depth in ("44.61", "60.00"):
+        folder = tmp_path / depth
+        assert main(["new", str(folder)]) == 0
+        path = folder / "measurements.csv"
+        path.write_text(path.read_text(encoding="utf-8").replace("44.61", depth), encoding="utf-8")
+        texts[depth] = Study(folder).computed
+    before, after = texts.values()
+    assert [report.uncertain().bent["chi2_eiv"][0] for report in (before, after)] == [True, False]
+    for edits, report in (([], before), ([("x_p", 3, "60.00")], after)):
+        found = told(before, edits)["cells"]["chi2_eiv"]["shown"]
+        assert found == [figure and figure.text for figure in report.figures("chi2_eiv")]
+
+
+def test_rounding_where_a_loop_rests_has_no_digits(told: Told, tmp_path: Path) -> None:
+    assert main(["new", str(tmp_path / "fit"), "--workbook", "fit"]) == 0
+    report = Study(tmp_path / "fit").computed
+    (text,) = told(report, [])["cells"]["curve_d2"]["shown"]
+    assert len(re.sub("\u00a0.*|\\D", "", text)) <= 3
 
 
 def test_temperatures_have_a_zero_of_their_own(told: Told, tmp_path: Path) -> None:

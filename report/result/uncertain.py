@@ -346,10 +346,15 @@ class Uncertainties:
     """Of the cells that have limits."""
     influence: Influence | None = None
     """On those cells and all scalars."""
-    bent: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
-    """Of shape (rows,), by column name; whether terms of second order are a part of it."""
+    second: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    """Of shape (rows,), by column; the variance that terms of second order make; 0 if they do not count."""
     misfits: Mapping[str, Misfit] = field(default_factory=dict)
     """Of the workbook's curves, by the cells of their sums of squares; those that are known."""
+
+    @property
+    def bent(self) -> dict[str, NDArray[np.bool_]]:
+        """Of shape (rows,), by column name; whether terms of second order are a part of it."""
+        return {name: second != 0 for name, second in self.second.items()}
 
     @property
     def advice(self) -> dict[str, str]:

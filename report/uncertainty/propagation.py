@@ -423,6 +423,6 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         tuple(budgets),
         tuple(map(spread.conformity, inputs.limits)),
         spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
-        {name: second != 0 for name, (_, second) in variances.items()},
+        {name: second for name, (_, second) in variances.items()},
         {each.name: found for each in inputs.workbook.curves if (found := spread.misfit(each))},
     )

@@ -92,23 +92,27 @@ def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def digits(report: Report, column: Column) -> dict[str, Any]:
-    """The digits of a computed column where no uncertainty tells, and those of cells that stay as issued."""
+    """The digits of a computed column where no uncertainty tells, and those of cells that stay as issued.
+
+    Of a cell to which terms of second order count the variance that they make: an edit leaves it as it is.
+    """
     warranted = report.shown[column.name].digits
     if isinstance(column.axis, RepeatAxis):
         return {"digits": warranted}
-    known, every = report.uncertain(), not follows(report)
-    bent = known.bent.get(column.name, ())
-    name, labels = column.name, report.values.labels(column)
+    every, name, labels = not follows(report), column.name, report.values.labels(column)
     issued = {
         index_text(label): order(value) - place + 1
-        for row, (label, value, place) in enumerate(
-            zip(labels, report.in_unit(name), report.places(name), strict=True)
-        )
-        if value is not None and (every or bent[row] or column.is_u)
+        for label, value, place in zip(labels, report.in_unit(name), report.places(name), strict=True)
+        if value is not None and (every or column.is_u)
     }
     least = min(issued.values(), default=warranted) if every else warranted
     kept = {index: number for index, number in issued.items() if not every or number != least}
-    return {"digits": least} | ({"kept": kept} if kept else {})
+    second = report.uncertain().second.get(name, ())
+    told = zip(labels, report.values.numbers(name), second, strict=False)
+    bent = {
+        index_text(label): float(f"{part:.6g}") for label, value, part in told if part and value is not None
+    }
+    return {"digits": least} | ({"kept": kept} if kept else {"bent": bent} if bent and not every else {})
 
 
 def _stated(said: Any, sample: str) -> list[dict[str, Any]]:

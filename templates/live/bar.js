@@ -49,10 +49,10 @@ function fillBar(look, name, row, index) {
 
 // Its uncertainty and what most of it comes from.
 function fillSure(look, name, row) {
-  const known = sureOf(look, name, row), { kept, doubt } = LIVE.columns[name];
+  const known = sureOf(look, name, row), { kept, bent, doubt } = LIVE.columns[name];
   if (!known) {
     const lacking = LIVE.shared && look.sure.lacking(name, row);
-    const told = lacking ? `its uncertainty is ${lacking}` : LIVE.shared ? kept?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
+    const told = lacking ? `its uncertainty is ${lacking}` : LIVE.shared ? bent?.[look.trace.index(name, row)] && "its uncertainty is of second order, which an edit leaves to draws" : kept && "its uncertainty is as issued";
     if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
     return;
   }

@@ -19,12 +19,12 @@ class Look {
     return (this.found ??= new Sure(this));
   }
 
-  // The power of ten of the last digit of a computed cell: its uncertainty says it. Where that is as issued, so is the
-  // number of digits.
+  // The power of ten of the last digit of a computed cell: its uncertainty says it, in which terms of second order stay as
+  // issued. Where all of it does, so does the number of digits.
   place(name, row) {
-    const { digits, scale, zero, kept } = LIVE.columns[name], value = (this.trace.sheet.value[name][row] - zero) / scale;
-    const own = kept?.[this.trace.index(name, row)] ?? (LIVE.shared ? 0 : digits);
-    return own ? order(value) - own + 1 : lastPlace(value, this.sure.u(name, row) / scale, digits, LIVE.most);
+    const { digits, scale, zero, kept, bent } = LIVE.columns[name], index = this.trace.index(name, row), value = (this.trace.sheet.value[name][row] - zero) / scale;
+    const own = kept?.[index] ?? (LIVE.shared ? 0 : digits);
+    return own ? order(value) - own + 1 : lastPlace(value, Math.sqrt(this.sure.u(name, row) ** 2 + (bent?.[index] ?? 0)) / scale, digits, LIVE.most);
   }
 
   column(name) {

@@ -22,11 +22,11 @@ function writePanel(look) {
   const rows = LIVE.headline.map(([name, index], place) => {
     const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
     // Draws may tell another standard uncertainty than the first order does, or none.
-    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], off = drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF), second = live && (LIVE.columns[name].kept || off), u = live && !second ? look.sure.u(name, row) / LIVE.columns[name].scale : NaN;
+    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], off = drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF), second = live && (LIVE.columns[name].bent?.[index] || off), u = !second && firstOrder(look, name, row);
     const more = live && isEdited() && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
     const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u > 0 ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
   if (LIVE.shared) head.lastChild.append(make("span", {}, `95\u00a0% of ${DRAWS} draws`));

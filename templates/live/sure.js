@@ -111,11 +111,16 @@ class Sure {
 
 const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
 
+// The standard uncertainty of a cell in its unit, where first order tells it and it is more than nothing.
+function firstOrder(look, name, row) {
+  const { scale, kept, bent } = LIVE.columns[name], u = LIVE.shared && row >= 0 && !(kept ?? bent)?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
+  return u > 0 && u < Infinity && u / scale;
+}
+
 // Value, u, k and U of a cell, as texts, and its budget; nothing where there is none.
 function sureOf(look, name, row) {
-  const { scale, zero, kept } = LIVE.columns[name];
-  const sure = LIVE.shared && row >= 0 && !kept?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
-  if (!(sure > 0 && sure < Infinity)) return null;
+  const { scale, zero } = LIVE.columns[name];
+  if (!firstOrder(look, name, row)) return null;
   const { u, factor, from } = look.sure.budget(name, row), value = (look.trace.sheet.value[name][row] - zero) / scale;
   const of = (width) => stated(value, width / scale, LIVE.most).map(figureText), known = factor > 0;
   return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from };
