@@ -303,6 +303,15 @@ def test_pictures_keep_their_size_and_their_text(report: Report, tree: ET.Elemen
     assert [child.tag for child in picture] == [SVG_NAME + "path"]
 
 
+def test_what_is_certain_has_no_expanded_uncertainty_on_its_card() -> None:
+    """All that is given of two spheres is exact."""
+    report = Study(PAPER.parent / "hertz").computed
+    assert [budget.u for budget in report.uncertain().budgets] == [0.0] * len(report.workbook.headline)
+    page = html.render(report, {})
+    assert "class=headline" in page
+    assert "class=sure" not in page
+
+
 def test_two_renderings_are_the_same_bytes(report: Report, page: str) -> None:
     assert html.render(report, {figure.name: SVG for figure in report.workbook.figures}) == page
 

@@ -226,7 +226,7 @@ class Said:
         if budget is None:
             return (), ()
         told: Inlines = ()
-        if math.isfinite(budget.factor):
+        if budget.u > 0 and math.isfinite(budget.factor):
             _, expanded = self.report.stated(cell.name, budget.value, budget.expanded)
             factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
             told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[cell.name].unit), factor
