@@ -116,7 +116,7 @@ function summedRows(name, row) {
 
 // What the rows of an index set are called, those of groups once more as themselves.
 function rowsOf(axis) {
-  const { of, kind } = PROGRAM.axes.find((one) => one.name === axis);
+  const { of, kind } = axisNamed(axis);
   return kind === "members" ? of : axis;
 }
 

@@ -116,8 +116,8 @@ function rounded(value, place, scientific = null) {
 // believed up; and up where rounding would make it smaller by more than a twentieth (JCGM 100, 7.2.6).
 function told(u, most = 2) {
   const { digits, first } = significant(u, 6), short = Math.round(digits / 10 ** (6 - most));
-  const text = String(short + (Number(`${short}e${first - most + 1}`) < 0.95 * u)), place = first - 2 * most + 1 + text.length;
-  return { digits: text.slice(0, most), place };
+  const text = String(short + (Number(`${short}e${first - most + 1}`) < 0.95 * u));
+  return { digits: text.slice(0, most), place: first - 2 * most + 1 + text.length };
 }
 
 // The power of ten of the last digit that is shown of a number: that of its uncertainty, if that is known; of what is

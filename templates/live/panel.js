@@ -22,7 +22,8 @@ function writePanel(look) {
   const rows = LIVE.headline.map(([name, index], place) => {
     const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
     // Draws may tell another standard uncertainty than the first order does, or none.
-    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], off = drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF), second = live && (LIVE.columns[name].bent?.[index] || off), u = !second && firstOrder(look, name, row);
+    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]];
+    const second = live && (LIVE.columns[name].bent?.[index] || drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF)), u = !second && firstOrder(look, name, row);
     const more = live && isEdited() && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
     const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
@@ -78,7 +79,7 @@ function makeAround() {
   for (const legend of all("main .legend")) if (legend.textContent.includes("Stated uncertainties:")) parts.push([legend, "list of stated uncertainties"]);
   if (LIVE.shared) for (const first of all(".headline, #uncertain > :first-child")) parts.push([first]);
   page.stale = parts.map(([place, what]) => {
-    const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "After edits U is of first order: a build says where second order counts.");
+    const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "After edits U is of first order: a build says where the second counts.");
     place.after(word);
     return word;
   });

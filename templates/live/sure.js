@@ -65,7 +65,7 @@ class Sure {
   // The combined standard uncertainty of a cell; NaN where nothing is known of it.
   u(name, row) {
     const { axis } = this.trace.declared[name];
-    if (axis !== null && axisNamed(axis).kind === "repeat" || !this.trace.isOk(name, row) || this.lacking(name, row)) return NaN;
+    if (axisNamed(axis)?.kind === "repeat" || !this.trace.isOk(name, row) || this.lacking(name, row)) return NaN;
     return ((this.known[name] ??= [])[row] ??= Math.sqrt(Math.max(0, sum(this.variances(this.parts(name, row))))));
   }
 

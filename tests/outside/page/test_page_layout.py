@@ -173,7 +173,7 @@ def test_chapters_that_are_as_issued_say_so(live: Live) -> None:
 
 
 def test_an_edited_page_says_that_its_expanded_uncertainties_are_of_first_order(live: Live) -> None:
-    words = live.page.get_by_text("After edits U is of first order: a build says where second order counts.")
+    words = live.page.get_by_text("After edits U is of first order: a build says where the second counts.")
     assert [word.is_visible() for word in words.all()] == [False] * 2
     live.type("x_p", 2, "29.8")
     assert [word.is_visible() for word in words.all()] == [True] * 2
