@@ -8,6 +8,7 @@ import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import gas
@@ -138,6 +139,21 @@ def test_what_bends_as_issued_has_the_digits_of_its_first_order_far_away(told: T
     for edits, report in (([], before), ([("x_p", 3, "60.00")], after)):
         found = told(before, edits)["cells"]["chi2_eiv"]["shown"]
         assert found == [figure and figure.text for figure in report.figures("chi2_eiv")]
+
+
+def test_what_bends_as_issued_has_its_digits_where_it_is_less(told: Told, tmp_path: Path) -> None:
+    """Speeds over the one that yields, of which a third is left by a softer target."""
+    texts = ("210 GPa, u = 5 GPa", "71 GPa, u = 5 GPa")
+    folder = copytree(PAPER.parent / "contact_models", tmp_path / "models", ignore=lambda *_: ["out"])
+    toml = (folder / "report.toml").read_text(encoding="utf-8")
+    before = Study(folder).computed
+    (folder / "report.toml").write_text(
+        toml.replace(f'E_1 = "{texts[0]}"', f'E_1 = "{texts[1]}"'), encoding="utf-8"
+    )
+    after = Study(folder).computed
+    assert before.uncertain().bent["v_over_Y"].all()
+    found = told(before, [("E_1", 0, texts[1].partition(" ")[0])])["cells"]["v_over_Y"]["shown"]
+    assert found == [figure and figure.text for figure in after.figures("v_over_Y")]
 
 
 def test_rounding_where_a_loop_rests_has_no_digits(told: Told, tmp_path: Path) -> None:

@@ -94,7 +94,8 @@ def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
 def digits(report: Report, column: Column) -> dict[str, Any]:
     """The digits of a computed column where no uncertainty tells, and those of cells that stay as issued.
 
-    Of a cell to which terms of second order count the variance that they make: an edit leaves it as it is.
+    Of a cell to which terms of second order count the variance that they make, and its value: an edit leaves
+    that as it is, or less where the cell is less.
     """
     warranted = report.shown[column.name].digits
     if isinstance(column.axis, RepeatAxis):
@@ -110,7 +111,9 @@ def digits(report: Report, column: Column) -> dict[str, Any]:
     second = report.uncertain().second.get(name, ())
     told = zip(labels, report.values.numbers(name), second, strict=False)
     bent = {
-        index_text(label): float(f"{part:.6g}") for label, value, part in told if part and value is not None
+        index_text(label): [float(f"{one:.6g}") for one in (part, value)]
+        for label, value, part in told
+        if part and value is not None
     }
     return {"digits": least} | ({"kept": kept} if kept else {"bent": bent} if bent and not every else {})
 

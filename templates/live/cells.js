@@ -20,11 +20,12 @@ class Look {
   }
 
   // The power of ten of the last digit of a computed cell: its uncertainty says it, in which terms of second order stay as
-  // issued. Where all of it does, so does the number of digits.
+  // issued, or are less as the value is. Where all of it stays, so does the number of digits.
   place(name, row) {
-    const { digits, scale, zero, kept, bent } = LIVE.columns[name], index = this.trace.index(name, row), value = (this.trace.sheet.value[name][row] - zero) / scale;
+    const { digits, scale, zero, kept, bent } = LIVE.columns[name], index = this.trace.index(name, row), x = this.trace.sheet.value[name][row], value = (x - zero) / scale;
+    const [second, issued] = bent?.[index] ?? [0];
     const own = kept?.[index] ?? (LIVE.shared ? 0 : digits);
-    return own ? order(value) - own + 1 : lastPlace(value, Math.sqrt(this.sure.u(name, row) ** 2 + (bent?.[index] ?? 0)) / scale, digits, LIVE.most);
+    return own ? order(value) - own + 1 : lastPlace(value, Math.sqrt(this.sure.u(name, row) ** 2 + second * Math.min(1, (x / issued) ** 2 || 0)) / scale, digits, LIVE.most);
   }
 
   column(name) {
@@ -41,8 +42,8 @@ class Look {
     const { texts, figures, places } = this.column(name), figure = figures[row];
     const code = CODES[this.trace.sheet.status[name][row]];
     const index = this.trace.index(name, row), missing = figure ? places - figure.fraction.length : 0;
-    const before = this.issued && this.issued.trace.row(name, index);
-    const same = before >= 0 && this.issued && isSameCell(this, name, row, this.issued, before);
+    const before = this.issued?.trace.row(name, index);
+    const same = before >= 0 && isSameCell(this, name, row, this.issued, before);
     return {
       name, row, index, code, ok: code === "ok", printed: texts?.[row] ?? null,
       text: code !== "ok" ? code : figure ? figureText(figure) : texts[row],
@@ -50,7 +51,7 @@ class Look {
       pad: missing > 0 ? `p${Math.min(missing, 8)}${figure.fraction ? "" : " nopoint"}` : "",
       beyond: code === "ok" ? this.trace.outsideOf(name, row).map(([, mark]) => mark).join("; ") : "",
       mark: !this.issued || same ? "" : before >= 0 ? "changed" : "added",
-      before: this.issued && before >= 0 && !same ? this.issued.shownText(name, before) : "",
+      before: before >= 0 && !same ? this.issued.shownText(name, before) : "",
     };
   }
 
