@@ -426,7 +426,7 @@ def book(report: Report) -> tuple[Grid, bytes]:
         grid = excel_grid.grid(report.sheet, values, units, first, drawn, words)
     except NotPrintable as error:
         raise UsageError(
-            diagnose("LS606", reason=error, known="functions that every spreadsheet has")
+            diagnose("LS606", reason=error, known="functions and lengths that every spreadsheet has")
         ) from error
     return grid, xlsx.render(report, grid)
 

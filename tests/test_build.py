@@ -55,6 +55,23 @@ def test_the_page_gets_the_program_of_sheet_and_curves(issued: Path) -> None:
     assert len(page.encode()) <= 410_000
 
 
+def test_a_formula_that_no_cell_takes_is_told(tmp_path: Path) -> None:
+    """Excel opens no file that has one."""
+    (tmp_path / "workbook.py").write_text(
+        "from sympy import Add, sin\n\nfrom loopsheet import Method, given, let\n\n\n"
+        "def sines(x):\n    return Add(*(sin(n * x) for n in range(1, 701)))\n\n\nclass Long(Method):\n"
+        '    """Many terms."""\n\n    x = given("1", "a number")\n'
+        '    y = let(sines(x), "their sum", "1")\n'
+    )
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[parameters]\nx = "0.25"\n')
+    with pytest.raises(UsageError) as refused:
+        build.build(Study(tmp_path), tmp_path / "out", ("xlsx",))
+    (finding,) = refused.value.diagnostics
+    assert finding.code == "LS606"
+    assert re.search(r"y has a formula of \d{5} characters, which no cell takes", finding.message)
+    build.build(Study(tmp_path), tmp_path / "out", ("html",))
+
+
 def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tmp_path: Path) -> None:
     folder = copy_paper(tmp_path / "in")
     toml = folder / "report.toml"

@@ -19,6 +19,7 @@ from ..sheet import Axis
 __all__ = [
     "CHECKED",
     "FIRST_ROW",
+    "LONGEST",
     "SCALARS",
     "SLOPES",
     "STEPS",
@@ -36,6 +37,8 @@ __all__ = [
 
 FIRST_ROW = 7
 """The row, from 0, of the first cell below the header of an axis' worksheet."""
+LONGEST = 8000
+"""Characters of a formula; Excel takes 8192, and cannot open a file that has more."""
 SCALARS = "report"
 """The worksheet of the scalars."""
 CHECKED = 6

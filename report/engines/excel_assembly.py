@@ -16,6 +16,7 @@ from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_un
 from ..cells.grid import (
     CHECKED,
     FIRST_ROW,
+    LONGEST,
     SCALARS,
     SLOPES,
     STEPS,
@@ -41,6 +42,7 @@ from .excel_formulas import Formulas, Places, carried, guard
 from .excel_loops import passes_of
 from .excel_roots import Unrolled, unroll
 from .excel_slopes import Slopes
+from .excel_values import NotPrintable
 from .numpy_texts import program_texts
 
 __all__ = ["Assembly", "auxiliary_texts"]
@@ -126,6 +128,9 @@ class Assembly:
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         slopes = derived.told(formulas)
         blocks += derived.blocks
+        for block in blocks:
+            if (longest := max((len(each.first) for each in block.filled), default=0)) > LONGEST:
+                raise NotPrintable(f"{block.name} has a formula of {longest} characters, which no cell takes")
         order = [SCALARS, *self.names.values(), STEPS, SLOPES]
         blocks.sort(
             key=lambda b: (

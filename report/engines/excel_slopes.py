@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, eye
 
-from ..cells.grid import SLOPES, CellBlock, FilledDown, Place
+from ..cells.grid import LONGEST, SLOPES, CellBlock, FilledDown, Place
 from ..plan.adjoints import Adjoint, Share, Term, adjoints
 from ..plan.derivatives import derivatives
 from ..plan.kept import as_data
@@ -30,8 +30,6 @@ from .numpy_texts import program_texts
 
 __all__ = ["Slopes"]
 
-_LONGEST = 8000
-"""Characters of a formula; Excel takes 8192."""
 _CRAMER = 2
 """Of so many numbers, the equations are solved by determinants; of more by an inverse."""
 _WIDE = 4
@@ -266,7 +264,7 @@ class _Printing(Writing):
             filled = self.adjoint(quantity)
             title = f"∂{quantity.result}/∂{quantity.of}"
             meaning = f"a share of {quantity.of}" if quantity.share else "a derivative"
-        if max(len(each.first) for each in filled) > _LONGEST:
+        if max(len(each.first) for each in filled) > LONGEST:
             raise NotPrintable(f"the derivative {name} is too long for a formula")
         array = self.array or any(each in filled[0].first for each in ("SUM(IF(", "MINVERSE(", "SMALL("))
         return CellBlock(name, "slope", title, meaning, self.place, filled, array, ("slope", name))

@@ -15,7 +15,7 @@ from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
-from ..cells.grid import CellBlock, Grid, Product, checked, factors
+from ..cells.grid import LONGEST, CellBlock, Grid, Product, checked, factors
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
@@ -41,8 +41,6 @@ _NONE = 1e-12
 """Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
-_LONGEST = 8000
-"""Characters of a formula; Excel takes 8192."""
 _DOF = '[>=1000000000]"∞";General'
 _BARS = {
     **{"type": "data_bar", "bar_color": "#E9B893"},
@@ -155,7 +153,7 @@ class _Written:
             told = "".join(terms).removeprefix("+")
             told = f"({told})" if len(terms) > 1 or told.startswith("-") else told
         unit = (grid[name].place.scale if source.u else 1) / self.block.place.scale
-        return f"={told}{factors(unit)[0]}" if 0 < len(told) < _LONGEST else ""
+        return f"={told}{factors(unit)[0]}" if 0 < len(told) < LONGEST else ""
 
     def times(self, source: ErrorSource, name: str, row: int, u: float) -> str:
         """The factor that is a standard uncertainty in SI, of an error that is not as large in all cells."""
