@@ -378,9 +378,9 @@ def test_a_sum_leaves_rows_without_values_out() -> None:
     cells = "items!$D$8:$D$9"
     rows = f"SUM(IF(ISNUMBER({cells}),1,0))"
     assert first(grid, "c") == (
-        f"=IF(AND(OR({rows}>0,ISNUMBER(items!$D$8)),ISNUMBER($G$6)),"
+        f"=IF({rows}>0,IF(ISNUMBER($G$6),"
         f"IFERROR($G$6*SUM(IF(ISNUMBER({cells}),({cells})^(2),0))/"
-        f'{rows},"#OVERFLOW!"),"#INPUT!")'
+        f'{rows},"#OVERFLOW!"),"#INPUT!"),"#INPUT!")'
     )
     assert grid["c"].array
     assert grid["c"].kept == {"items": f"={rows}"}

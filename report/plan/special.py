@@ -13,6 +13,7 @@ DLMF 8.17.7 and M Abramowitz, I A Stegun, Handbook of Mathematical Functions, 15
 from __future__ import annotations
 
 from functools import lru_cache, reduce
+from itertools import count
 from math import ceil, log10
 from operator import mul
 from typing import Any
@@ -62,9 +63,10 @@ def _of_gauss(a: Rational, digits: int) -> tuple[Expr, ...]:
         def gauss(w: Any) -> Any:
             return mpmath.hyp2f1(first, 1, first / 2 + 1, w)
 
-        terms = ceil(digits / log10(3 + 8**0.5)) + 1
-        found, error = mpmath.chebyfit(gauss, [0, mpmath.mpf(1) / 2], terms, error=True)
-        assert error < mpmath.mpf(10) ** -digits
+        for terms in count(ceil(digits / log10(3 + 8**0.5)) + 1):  # more for a large a
+            found, error = mpmath.chebyfit(gauss, [0, mpmath.mpf(1) / 2], terms, error=True)
+            if error < mpmath.mpf(10) ** -digits:
+                break
         return tuple(Float(each, digits + 2) for each in reversed(found))
 
 
