@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from itertools import pairwise
+from math import comb, prod
 from typing import Any
 
 import numpy as np
@@ -19,16 +20,18 @@ from sympy import (
     Integer,
     Mul,
     Piecewise,
+    Pow,
     Rel,
     Symbol,
     ceiling,
     degree,
     diff,
     exp,
-    expand,
+    expand_power_exp,
     factor,
     false,
     floor,
+    fraction,
     sift,
     sign,
     together,
@@ -54,7 +57,7 @@ JUMPS = (floor, ceiling, sign, Piecewise)
 _HALVINGS, _PARTS = 16, 64
 """How often an interval of the unknown is halved, and how many parts may be open after that."""
 _LARGEST = 200
-"""Operations of a slope that is taken apart into factors."""
+"""Terms of a slope that is taken apart into factors, which takes long of many."""
 
 
 def certified(sheet: Sheet, column: Column) -> bool:
@@ -162,10 +165,11 @@ def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) 
     span = {symbol: Intervals([least], [most]) for symbol, least, most in cells}
     if _is_of_one_sign(steepness, known, plain, ends, span):
         return True
-    if steepness.has(RowSum) or steepness.count_ops() > _LARGEST:
-        return False
     way = Symbol(unknown.name, positive=True)
-    product = factor(together(expand(steepness.xreplace({plain: low + way}))))
+    whole_slope = together(expand_power_exp(steepness.xreplace({plain: low + way})))
+    if steepness.has(RowSum) or _terms(fraction(whole_slope)[0]) > _LARGEST:
+        return False
+    product = factor(whole_slope)
     open_ones = [
         base
         for each in Mul.make_args(product)
@@ -199,6 +203,18 @@ def _is_of_one_sign(
     except (KeyError, SheetError, TypeError):
         return False
     return False
+
+
+def _terms(expression: Expr) -> int:
+    """How many terms an expression has at most when it is multiplied out."""
+    match expression:
+        case Add():
+            return sum(map(_terms, expression.args))
+        case Mul():
+            return prod(map(_terms, expression.args))
+        case Pow(base=base, exp=Integer(p=power)) if power > 0:
+            return comb(_terms(base) + power - 1, power)
+    return 1
 
 
 def _run(expressions: list[Any], span: Mapping[Symbol, Intervals]) -> list[Intervals]:
