@@ -19,8 +19,9 @@ __all__ = ["FIRST_YIELD", "JOHNSON", "SLOW", "YIELD", "YIELD_WORDS"]
 
 YIELD_WORDS = (
     Quantity("sigma_Y", "yield strength of the target", "Pa", "Y%s", (1e8, 2e9)),
+    # From 0.38 (nu = 0) to 0.55 (nu = 1/2). The slope of (L136) keeps its sign up to 0.84.
     Quantity(
-        "zeta_Y", "depth of first yield, over the radius of the contact", "1", r"\zeta_{Y%s}", (0.2, 0.9)
+        "zeta_Y", "depth of first yield, over the radius of the contact", "1", r"\zeta_{Y%s}", (0.2, 0.8)
     ),
     Quantity("s_0", "stress difference on the axis, over the pressure at the centre", "1", "s%s", (0.1, 0.9)),
     Quantity("p_Y", "pressure at the centre at first yield", "Pa", "p_{Y%s}", (1e8, 4e9)),

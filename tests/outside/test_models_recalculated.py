@@ -14,6 +14,7 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "much of it lost": {("e", 3): 0.06},
     "less of it lost": {("e", 1): 0.6},
     "a yield strength and a speed": {("sigma_Y", 0): 0.5, ("v", 2): 3.9},
+    "Poisson's ratio": {("nu_2", 0): 0.25},
 }
 
 
