@@ -266,7 +266,7 @@ def test_a_word_is_one_upright_name() -> None:
         (r"\text{a < b}", "<mtext>a &lt; b</mtext>"),
         (r"\foo", "<mi>foo</mi>"),
         ("2.5 < x", "<mn>2.5</mn><mo>&lt;</mo><mi>x</mi>"),
-        (r"2 \ln(x)", '<mn>2</mn><mspace width="0.17em"/><mi>ln</mi>'
+        (r"2 \ln(x)", '<mn>2</mn><mspace width=".17em"/><mi>ln</mi>'
          '<mo stretchy="false">(</mo><mi>x</mi><mo stretchy="false">)</mo>'),
     ],
 )  # fmt: skip

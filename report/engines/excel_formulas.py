@@ -321,13 +321,15 @@ class Writing:
             if not runs or runs[-1][0] != axis:
                 runs.append((axis, []))
             runs[-1][1].append((f"ISNUMBER({address})", _CODE[Status.INPUT] if given else address))
-        for axis, tests in reversed(runs):
-            if axis:
-                # The first row tells why: if no row has values, some cell of it is in error.
-                code = _unless(tests[:-1], tests[-1][1])
-                otherwise = f"IF({self.number_kept(axis)}>0,{otherwise},{code})"
+        last = {axis: n for n, (axis, _) in enumerate(runs)}
+        for n, (axis, tests) in reversed(list(enumerate(runs))):
+            kept = self.number_kept(axis) if axis else ""
+            # The first row tells why: if no row has values, some cell of it is in error, here or further on.
+            if axis and n == last[axis]:
+                otherwise = f"IF({kept}>0,{otherwise},{_unless(tests[:-1], tests[-1][1])})"
             else:
-                otherwise = _unless(tests, otherwise)
+                held = [(f"OR({kept}>0,{test})" if axis else test, code) for test, code in tests]
+                otherwise = _unless(held, otherwise)
         return otherwise
 
     # --- whole formulas

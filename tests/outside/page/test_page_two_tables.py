@@ -102,6 +102,7 @@ def test_a_block_is_pasted_into_the_table_that_has_the_focus(live: Live, tmp_pat
 def test_edits_of_both_last(live: Live, tmp_path: Path) -> None:
     live.type("y_s", 2, "0.553")
     live.type("y", 2, "0.213")
+    live.page.on("dialog", lambda asked: asked.accept())  # a page that is stayed at says nothing of last time
     live.page.reload()
     live.page.wait_for_selector("html[data-live=ready]")
     assert live.text("live-note") == "Your edits of last time are here again."
