@@ -137,17 +137,16 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
 
 def _in_order(options: argparse.Namespace) -> None:
     """Refuse a folder that stands where what is asked of it should."""
-    from .inputs.folders import WORD, is_report, written
+    from .inputs.folders import WORD, is_report, report_folder, written
     from .messages.errors import UsageError, diagnose
 
     named = getattr(options, "folder", None)
     word = getattr(options, "cell", None) or (named and getattr(options, "equation", None))
     if not word or is_report(Path(named or "")) or not (word == WORD or is_report(Path(word))):
         return
-    folder = word if word == WORD else written(Path(word))
     asked = shlex.quote(named) if named else "CELL"
     reason = f"'{word}' is a folder: what is asked of it stands before it"
-    hint = f"'loopsheet {options.verb} {asked} {folder}'"
+    hint = f"'loopsheet {options.verb} {asked} {written(report_folder(word))}'"
     raise UsageError(diagnose("LS617", reason=reason, known="", suggestion=hint))
 
 

@@ -39,9 +39,13 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     if log not in ("", "x", "y", "xy"):
         raise SheetError(f"log={log!r} names no axes: x, y or xy")
 
+    sketched = {column.name: column for column in body.drawn}
+
+    def called(name: str) -> Column:
+        return sketched.get(name) or body.column(name)
+
     def named(*cells: Any) -> list[Column]:
-        sketched = {column.name: column for column in body.drawn}
-        return [sketched.get(name) or body.column(name) for name in map(name_of, cells)]
+        return [called(name_of(cell)) for cell in cells]
 
     across, up = named(x, y)
     for each in (across, up):
@@ -59,8 +63,7 @@ def plot(x: Any, y: Any, *curves: Any, caption: str = "", log: str = "") -> None
     said, number = f"{up.meaning} over {across.meaning}", str(len(body.figures) + 1)
     chart = Chart(said, across.meaning, up.meaning, tuple(series), log, whole=True)
     caption = caption or f"{sentence_case(said)}."
-    by_name = {column.name: column for column in (*body.columns.values(), *body.drawn)}
-    if any(not by_name[getattr(each, axis)].positive for each in series for axis in log):
+    if any(not called(getattr(each, axis)).positive for each in series for axis in log):
         caption += " What is zero or below has no place on a logarithmic axis."
     body.figures.append(FigureSpec(f"plot_{number}", number, caption, chart=chart))
 

@@ -169,7 +169,7 @@ with evaluate(False):
         (
             t,
             _part * x_y / v * (v / V_y) ** Rational(4, 5) * betainc(_part, half, 0, (V_y / v) ** 2)
-            + sqrt(m_red / (pi * R * p_y)) * acos(2 * x_y / (3 * x_m - x_y))
+            + sqrt(m_red / (pi * R * p_y)) * acos(cut_at.value)
             + (x_m - x_p) / (e_T * v) * hertz.lasts(hertz.hertz),
         ),
         "the shares of the way summed, by Euler's beta functions (DLMF 5.12.1 and 8.17.1)",

@@ -46,7 +46,7 @@ from ..plan.nodes import Leaf, Plan, RootNode, RowSum
 from ..sheet import Column, Sheet, SheetError
 from .interval_functions import holds
 from .intervals import Intervals
-from .kernels import Enclosing
+from .kernels import Enclosing, Kernel
 from .mpmath_intervals import differences, printed
 from .numpy_code import kernel
 from .roots import magnitude
@@ -165,14 +165,15 @@ def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) 
     span = {symbol: Intervals([least], [most]) for symbol, least, most in cells}
     if _is_of_one_sign(steepness, known, plain, ends, span):
         return True
-    way = Symbol(unknown.name, positive=True)
-    whole_slope = together(expand_power_exp(steepness.xreplace({plain: low + way})))
-    if steepness.has(RowSum) or _terms(fraction(whole_slope)[0]) > _LARGEST:
+    if steepness.has(RowSum):
         return False
-    product = factor(whole_slope)
+    way = Symbol(unknown.name, positive=True)
+    along = together(expand_power_exp(steepness.xreplace({plain: low + way})))
+    if _terms(fraction(along)[0]) > _LARGEST:
+        return False
     open_ones = [
         base
-        for each in Mul.make_args(product)
+        for each in Mul.make_args(factor(along))
         for base, power in (each.as_base_exp(),)
         if not (each.is_nonnegative or each.is_nonpositive or power.is_even)
     ]
@@ -185,10 +186,11 @@ def _is_of_one_sign(
 ) -> bool:
     """Whether a slope is, part by part: where intervals leave it open, both halves are asked."""
     try:
-        low, high = _run(list(ends), span)
+        low, high = _run(kernel(ends), span)
+        asked = kernel([steepness, held(known)])
         parts, signs = Intervals(np.atleast_1d(low.low), np.atleast_1d(high.high)), set[bool]()
         for _ in range(_HALVINGS):
-            found, sure = _run([steepness, held(known)], {**span, plain: parts})
+            found, sure = _run(asked, {**span, plain: parts})
             rises, falls, sure = found.low >= 0, found.high <= 0, sure.low == 1
             signs |= {True} if (rises & sure).any() else set()
             signs |= {False} if (falls & ~rises & sure).any() else set()
@@ -217,9 +219,8 @@ def _terms(expression: Expr) -> int:
     return 1
 
 
-def _run(expressions: list[Any], span: Mapping[Symbol, Intervals]) -> list[Intervals]:
+def _run(function: Kernel, span: Mapping[Symbol, Intervals]) -> list[Intervals]:
     """Expressions over all that their symbols may be."""
-    function = kernel(expressions)
     named = {symbol.name: each for symbol, each in span.items()}
     given: Any = [named[name] for name in function.arguments]
     with np.errstate(all="ignore"):

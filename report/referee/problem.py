@@ -202,8 +202,7 @@ class Problem:
     def fitted_to(self, name: str) -> list[int]:
         """Those of them that follow from a given column."""
         sheet = self.campaign.sheet
-        follow = {column.name for column in sheet.columns if sheet[name] in sheet.ancestors(column)}
-        return [n for n in self.fitted if self.unknowns[n].column in follow]
+        return [n for n in self.fitted if sheet[name] in sheet.ancestors(sheet[self.unknowns[n].column])]
 
     def restarted(self, points: Array) -> Array:
         """Points (points, unknowns) with what is free as it would follow from the rest.

@@ -1,4 +1,4 @@
-"""What the tests beside it share: npm packages, environments of Python."""
+"""What the tests beside it share: npm packages, environments of Python, edited workbooks."""
 
 import fcntl
 import shutil
@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -62,3 +63,18 @@ def environment() -> Callable[..., Path]:
         return own
 
     return install
+
+
+@pytest.fixture(scope="module")
+def read(
+    request: pytest.FixtureRequest,
+    delivered: Any,
+    require: Callable[..., str],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """The cells of a module's workbook, `delivered`, after each of its EDITS, by LibreOffice."""
+    import spreadsheets  # most tests need none
+
+    soffice = require("soffice", "libreoffice")
+    books = {name: delivered.edited(edits) for name, edits in request.module.EDITS.items()}
+    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)

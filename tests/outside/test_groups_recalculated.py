@@ -20,15 +20,6 @@ def delivered(tmp_path_factory: pytest.TempPathFactory) -> spreadsheets.Delivere
     return spreadsheets.deliver(grouped.write(tmp_path_factory.mktemp("grouped") / "few"))
 
 
-@pytest.fixture(scope="module")
-def read(
-    delivered: spreadsheets.Delivered, require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, dict[str, dict[str, Any]]]:
-    soffice = require("soffice", "libreoffice")
-    books = {name: delivered.edited(edits) for name, edits in EDITS.items()}
-    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
-
-
 @pytest.mark.parametrize("name", EDITS)
 def test_an_edited_workbook_is_what_numpy_makes_of_it(
     delivered: spreadsheets.Delivered, read: dict[str, dict[str, dict[str, Any]]], name: str

@@ -1,6 +1,5 @@
 """The contact models in LibreOffice: with other tests and bodies the workbook is what NumPy makes of them."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -21,15 +20,6 @@ EDITS: dict[str, spreadsheets.Edits] = {
 @pytest.fixture(scope="module")
 def delivered() -> spreadsheets.Delivered:
     return spreadsheets.deliver(PAPER.parent / "contact_models", drawn=False)
-
-
-@pytest.fixture(scope="module")
-def read(
-    delivered: spreadsheets.Delivered, require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, dict[str, dict[str, Any]]]:
-    soffice = require("soffice", "libreoffice")
-    books = {name: delivered.edited(edits) for name, edits in EDITS.items()}
-    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
 
 
 @pytest.mark.parametrize("name", EDITS)

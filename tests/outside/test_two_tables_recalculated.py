@@ -1,6 +1,5 @@
 """Two tables of rows in LibreOffice: after edits of both the workbook is what NumPy makes of them."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -19,15 +18,6 @@ EDITS: dict[str, spreadsheets.Edits] = {
 @pytest.fixture(scope="module")
 def delivered(tmp_path_factory: pytest.TempPathFactory) -> spreadsheets.Delivered:
     return spreadsheets.deliver(two_tables.write(tmp_path_factory.mktemp("two") / "tables"))
-
-
-@pytest.fixture(scope="module")
-def read(
-    delivered: spreadsheets.Delivered, require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, dict[str, dict[str, Any]]]:
-    soffice = require("soffice", "libreoffice")
-    books = {name: delivered.edited(edits) for name, edits in EDITS.items()}
-    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
 
 
 @pytest.mark.parametrize("name", EDITS)
