@@ -188,7 +188,13 @@ def settle(expression: Any, solution: Mapping[Expr, Expr], facts: Facts = NOTHIN
 @lru_cache(maxsize=64)
 def _integrate(integral: Integral) -> Expr:
     closed = in_powers(integral)
-    return integral.doit() if closed is None else closed
+    if closed is not None:
+        return closed
+    # Of a broken power of what grows as an exponential there is no closed form, for which sympy would search.
+    outer, inner = expand_power_base(integral.function).as_independent(*integral.variables, as_Add=False)
+    if isinstance(inner, Pow) and not inner.exp.is_integer and inner.base.has(exp):
+        return outer * integral.func(inner, *integral.limits)
+    return integral.doit()
 
 
 def in_powers(integral: Integral) -> Expr | None:

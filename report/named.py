@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 
-from sympy import And, Basic, Eq, Expr, Indexed, Rational, Symbol, floor
+from sympy import And, Basic, Eq, Expr, Indexed, Integral, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
 from ..derivations.reductions import REDUCTIONS, Member, OrderStatistic, member_of, taken_of
@@ -150,6 +150,9 @@ class Named:
             if taken and isinstance(column.rule, Root):
                 raise SheetError(f"{taken} in a root has to be a column of its own", column.name)
             self._check_scope(column, taken_of(expression), over)
+        elif isinstance(expression, Integral):
+            for part in _at_ends(expression):
+                self._check_scope(column, part, axis)
         elif isinstance(expression, Indexed):
             self._check_cell(column, expression, axis)
         elif isinstance(expression, Symbol):
@@ -220,11 +223,20 @@ def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None =
     """
     if isinstance(expression, REDUCTIONS):
         yield from references(taken_of(expression), sums, _over(expression, sums))
+    elif isinstance(expression, Integral):
+        for part in _at_ends(expression):
+            yield from references(part, sums, over)
     elif isinstance(expression, (Indexed, Symbol)):
         yield Reference(expression, over)
     else:
         for argument in expression.args:
             yield from references(argument, sums, over)
+
+
+def _at_ends(integral: Integral) -> Iterator[Basic]:
+    """What an integral names: its ends, and what is integrated at one of them."""
+    ((variable, low, high),) = integral.limits
+    yield from (low, high, integral.function.xreplace({variable: low}))
 
 
 def summed_over(axes: Iterable[Axis]) -> dict[Expr, Axis]:

@@ -41,12 +41,13 @@ def test_cells_are_what_a_simulated_impact_shows(values: Values, author: Author)
                 ("e", back),
                 ("x_m", author.x_m.own.name),
                 ("F_m", author.F_m.own.name),
+                ("t", author.t.own.name),
             )
         }
         constants = {damping.K: stiffness, damping.n: 1.5, damping.c: own["c"]}
         found = simulate(law, constants, mass, speed)
-        assert (found.e, found.x_m, found.F_m) == pytest.approx(
-            (own["e"], own["x_m"], own["F_m"]), rel=1e-9
+        assert (found.e, found.x_m, found.F_m, found.duration) == pytest.approx(
+            (own["e"], own["x_m"], own["F_m"], own["t"]), rel=1e-9
         ), row
 
 

@@ -31,6 +31,7 @@ __all__ = [  # noqa: RUF022 - symbols, then equations in their order
     "x", "rate", "F", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "F_m", "W",
     "q", "family", "compression", "left", "rebound", "work", "approach", "returned", "by_decay", "peak_speed",
     "peak_approach", "greatest", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores",
+    "back", "asked", "lasting", "s_d", "t",
     "MEMBERS", "LEDGER",
 ]
 # fmt: on
@@ -52,6 +53,11 @@ VOCABULARY = Vocabulary(
     Quantity(
         "q", "how far the damping lowers the force at separation, as a logarithm", "1", "q%s", (0.05, 3.0)
     ),
+    Quantity("s_d", "logarithm of the damping's factor", "1", "s%s", (-0.5, 0.04), positive=False),
+    Quantity("sdot", "rate of that logarithm", "1/s", r"\dot{s}%s", (-1e6, -1e3), positive=False),
+    Quantity("xddot", "acceleration of the approach", "m/s^2", r"\ddot{x}%s", (-1e7, 0.0), positive=False),
+    Quantity("x_s", "approach with that logarithm", "m", "x_{s%s}", (1e-6, 1e-4)),
+    Quantity("t_d", "duration of the contact with damping", "s", "t%s", (1e-6, 1e-3)),
     Quantity("x_m", "maximum approach", "m", "x_{m%s}", (1e-5, 1e-4)),
     Quantity("u_F", "rate at the greatest force, over the impact speed", "1", "u_{F%s}", (0.05, 0.95)),
     Quantity("x_F", "approach at the greatest force", "m", "x_{F%s}", (1e-6, 1e-4)),
@@ -74,10 +80,12 @@ VOCABULARY = Vocabulary(
 x, rate, F, K, n, c, e, e_o, v_0, m_red, x_m, u_F, x_F, F_m, g, q, J, W = VOCABULARY.plain(
     "x xdot F K n c e e_o v_0 m_red x_m u_F x_F F_m g q J W"
 )
+s_d, sdot, xddot, x_s, t = VOCABULARY.plain("s_d sdot xddot x_s t_d")
 c_LN, c_HG, c_F, c_HC, c_LW, c_G, c_CM = VOCABULARY.plain("c_LN c_HG c_F c_HC c_LW c_G c_CM")
 W_LN, W_HG, W_F = VOCABULARY.plain("W_LN W_HG W_F")
 zeta, F_T, K_T = VOCABULARY.plain("zeta F_T K_T")
 w, y = Symbol("w", positive=True), Symbol("y", positive=True)
+sigma = Symbol("sigma", real=True)
 half = Rational(1, 2)
 _within = c * e_o < 1
 
@@ -152,6 +160,73 @@ with evaluate(False):
         (log(1 + c) + q, c + 1 - exp(-q)),
         "(L106) in terms of the factor exp(-q) = 1 - c e_o that damping leaves at separation",
         title="restitution by the factor of the damping at separation",
+    )
+    back = Equation(
+        "(L168)",
+        (e_o, (1 - exp(-q)) / c),
+        "what that factor is",
+        title="restitution that is returned, by the factor at separation",
+        defines=e_o,
+    )
+    asked = Equation(
+        "(L169)",
+        (c, (1 - exp(-q)) / e_o),
+        "what that factor is",
+        title="damping number, by the factor at separation",
+        defines=c,
+    )
+
+    # The logarithm s of the factor 1 + c x'/v_0 falls from log(1 + c) at impact to -q at separation.
+    factor = Equation(
+        "", (exp(s_d), 1 + c * rate / v_0), "definition", Kind.DEFINITION, "logarithm of the factor"
+    )
+    turned = Equation(
+        "", (xddot, v_0 * exp(s_d) * sdot / c), "the rate of that", Kind.DEFINITION, "rate by the logarithm"
+    )
+    newton = Equation("", (m_red * xddot, -F), "Newton's law", Kind.ASSUMPTION, "Newton's law")
+    falls = Equation(
+        "(L190)",
+        (sdot, -c * K * x**n / (m_red * v_0)),
+        "Newton's law with (L101)",
+        title="rate of the logarithm of the damping's factor",
+    )
+    _fallen = 1 + c - log(1 + c) - exp(s_d) + s_d
+    work_fallen = Equation(
+        "",
+        (
+            Integral(K * x**n, (x, 0, x_s)),
+            m_red * v_0**2 * Integral(exp(sigma) - 1, (sigma, s_d, log(1 + c))) / c**2,
+        ),
+        "Newton's law up to that approach, variables separated, by the logarithm of the factor",
+        Kind.ASSUMPTION,
+        "work by the logarithm of the factor",
+    )
+    deep = Equation(
+        "(L191)",
+        (x_s ** (n + 1), (n + 1) * m_red * v_0**2 * _fallen / (K * c**2)),
+        "(L101) integrated up to that approach",
+        title="approach by the logarithm of the damping's factor",
+    )
+    _scale = (n + 1) * m_red * v_0**2 / (K * c**2)
+    passing = Equation(
+        "",
+        (t, Integral(m_red * v_0 / (c * K) * (_scale * _fallen) ** (-n / (n + 1)), (s_d, -q, log(1 + c)))),
+        "the way of the logarithm over its rate (L190), with the approach (L191)",
+        Kind.ASSUMPTION,
+        "way of the logarithm",
+    )
+    lasting = Equation(
+        "(L192)",
+        (
+            t,
+            m_red
+            * v_0
+            / (c * K * _scale ** (n / (n + 1)))
+            * Integral(_fallen ** (-n / (n + 1)), (s_d, -q, log(1 + c))),
+        ),
+        "what is the same all the way taken out",
+        title="duration of the contact with damping",
+        defines=t,
     )
 
     # The greatest force comes before the maximum approach: there dF/dt = 0.
@@ -384,7 +459,17 @@ LEDGER = Ledger(
         Derivation(
             (Step(by_decay, (decay, left, returned), (g, e_o), "Put the factor in.", multiplier=Integer(-1)),)
         ),
+        Derivation.of(back, (decay, left), (q, g), "Solve for the restitution."),
+        Derivation.of(asked, (decay, left), (q, g), "Solve for the number."),
         Derivation.of(peak_approach, (work_peak,), (K,), "Integrate both sides."),
+        Derivation.of(
+            falls,
+            (newton, turned, family, factor),
+            (xddot, sdot, F, rate),
+            "Put force and rates into Newton's law.",
+        ),
+        Derivation.of(deep, (work_fallen,), (K,), "Integrate both sides."),
+        Derivation.of(lasting, (passing,), (t,), "Take out of the integral what does not change."),
         Derivation(
             (
                 Step(

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from sympy import Expr, Integer, Max, Rational, Rel, Symbol, beta, exp, log
+from sympy import Expr, Integer, Max, Rational, Rel, beta, log
 
 from ..equation import Derivation, Equation, Step
 from ..vocabulary import Quantity
@@ -18,7 +18,23 @@ from . import damping, hertz
 
 __all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solving", "Told", "course"]
 
-_TAKEN = ("xdot", "c", "g", "q", "e_o", "u_F", "x_F", "W_LN", "W_HG", "W_F")
+_TAKEN = (
+    "xdot",
+    "c",
+    "g",
+    "q",
+    "e_o",
+    "s_d",
+    "sdot",
+    "xddot",
+    "x_s",
+    "t_d",
+    "u_F",
+    "x_F",
+    "W_LN",
+    "W_HG",
+    "W_F",
+)
 _LEFT_ASIDE = ("(L109)", "(L117)", "(L118)")
 _ELASTIC = replace(damping.VOCABULARY["W"], name="W_el", latex=r"W_{\mathrm{el}%s}")
 _FORCE = Quantity("F_damped", "force with damping", "N", r"F_{d%s}", (1.0, 5000.0))
@@ -65,17 +81,13 @@ def course(author: Author, rate: Expr) -> tuple[Expr, Expr]:
 
 
 class Solving(NamedTuple):
-    """How a cell is solved for."""
+    """Where a cell that both sides of its equation have is looked for."""
 
-    form: Equation
-    unknown: Symbol
-    value: Expr
-    """`form`, `unknown` and `value`: what is solved, for what, and the cell in terms of that."""
     low: Expr
     high: Expr
     start: Expr
-    """`low`, `high` and `start`: the open interval of the unknown, at whose low end the left side of the form
-    is the smaller one; and a first guess."""
+    """`low`, `high` and `start`: an open interval, at whose low end the left side is the smaller one; and a
+    first guess."""
 
 
 class Told(NamedTuple):
@@ -94,28 +106,35 @@ class Author:
 
     title: str
     c: Told
+    q: Told
     e: Told | None
-    """`c` and `e`: the damping number, and what comes back; None where that is what is typed in."""
+    """`c`, `q` and `e`: the damping number, the logarithm of its factor at separation, and what comes back;
+    None where that is what is typed in."""
     x_m: Told
     u_F: Told
     F_m: Told
     """`x_m`, `u_F` and `F_m`: the greatest approach; the greatest force, and the rate where it acts over the
     impact speed."""
+    t: Told
+    """The duration."""
 
     @property
     def told(self) -> tuple[Told, ...]:
         """All of them, each after what it needs."""
-        return tuple(each for each in (self.c, self.e, self.x_m, self.u_F, self.F_m) if each)
+        first = (self.c, self.q, self.e) if self.e else (self.q, self.c)
+        return tuple(each for each in (*first, self.x_m, self.u_F, self.F_m, self.t) if each)
 
 
-family, returned, by_decay, approach, peak_approach, peak_speed, greatest = map(
+family, by_decay, back, asked, approach, peak_approach, peak_speed, greatest, lasting = map(
     _here,
     (
-        damping.family, damping.returned, damping.by_decay, damping.approach, damping.peak_approach,
-        damping.peak_speed, damping.greatest,
+        damping.family, damping.by_decay, damping.back, damping.asked, damping.approach,
+        damping.peak_approach, damping.peak_speed, damping.greatest, damping.lasting,
     ),
 )  # fmt: skip
-c, q, e_o, x_m, u_F, F_m = damping.c, damping.q, damping.e_o, damping.x_m, damping.u_F, damping.F_m
+c, q, e_o, x_m, u_F, F_m, t = (
+    damping.c, damping.q, damping.e_o, damping.x_m, damping.u_F, damping.F_m, damping.t,
+)  # fmt: skip
 
 
 def _author(mark: str, title: str, member: Equation | None) -> Author:
@@ -130,37 +149,51 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
 
     typed, number = hertz.e, damping.VOCABULARY.get(f"c_{mark}")
     number = number or own("c", "", "1", "c_{*}", (0.05, 1.5))
-    back = own("e", "restitution", "1", "e_{*}", (0.05, 0.6))
+    left = own("q", "logarithm of the factor at separation", "1", "q_{*}", (0.05, 3.0))
+    returned = own("e", "restitution", "1", "e_{*}", (0.05, 0.6))
     deepest = own("x_m", "maximum approach", "m", "x_{m,*}", (1e-5, 1e-4))
     rate = own("u_F", "rate at the greatest force over the impact speed", "1", "u_{F,*}", (0.05, 0.95))
     peak = own("F_m", "greatest force", "N", "F_{m,*}", (100.0, 1e4))
-    here = {c: number.symbol, e_o: back.symbol, x_m: deepest.symbol, u_F: rate.symbol, F_m: peak.symbol}
+    lasts = replace(own("t", "duration of the contact", "s", "t_{*}", (1e-6, 1e-3)), positive=False)
+    comes_back = returned.symbol if member else typed
+    here = {
+        c: number.symbol, q: left.symbol, e_o: comes_back, x_m: deepest.symbol, u_F: rate.symbol,
+        F_m: peak.symbol, t: lasts.symbol,
+    }  # fmt: skip
 
-    def told(of: Quantity, equation: Equation, solved: Solving | None = None) -> Told:
-        return Told(of, replace(equation.at(here), defines=of.symbol), solved)
+    def told(of: Quantity, equation: Equation, *more: Any) -> Told:
+        return Told(of, replace(equation.at(here), defines=of.symbol), *more)
 
     # The sides of (L120) are alike at q = 0, where the bodies part as fast as they met. Its other root is
     # between log(1 + c) and c; if the restitution is known, so that c is (1 - exp(-q))/e, between -log(e) and
     # the number of (L115). From the upper ends on, Newton's steps come down to it.
     if member is None:
-        equation, damped = returned.at({c: number.symbol, e_o: typed}), (1 - exp(-q)) / typed
-        sought = Solving(by_decay.at({c: damped}), q, damped, -log(typed), *(2 * (1 / typed - typed,)))
-        tells, gives = Told(number, replace(equation, defines=number.symbol), sought), None
+        low, high = -log(typed), 1 / typed - typed
+        by_typed = by_decay.at({c: asked.value.xreplace({e_o: typed})})
+        tells, factor, gives = told(number, asked), told(left, by_typed, Solving(low, high, high)), None
     else:
-        gone = (1 - exp(-q)) / number.symbol
-        sought = Solving(by_decay.at(here), q, gone, log(1 + number.symbol), *(2 * (number.symbol,)))
-        tells, gives = Told(number, member), told(back, returned, sought)
+        low, high = log(1 + number.symbol), number.symbol
+        tells, factor = Told(number, member), told(left, by_decay, Solving(low, high, high))
+        gives = told(returned, back)
     divides = member is None or not member.value.subs(typed, 0).is_finite
+    needs = (_LOSSY, _FINITE) if divides else (_LOSSY,)
     return Author(
         title,
-        tells._replace(needs=(_LOSSY, _FINITE) if divides else (_LOSSY,)),
+        tells._replace(needs=needs),
+        factor._replace(needs=needs if member is None else ()),
         gives,
         told(deepest, approach),
-        told(rate, peak_speed, Solving(peak_speed.at(here), rate.symbol, rate.symbol, *_FROM_ZERO_TO_ONE)),
+        told(rate, peak_speed, Solving(*_FROM_ZERO_TO_ONE)),
         told(peak, greatest),
+        told(lasts, lasting, None, ((number.symbol <= _MOST, _TOO_DAMPED),)),
     )
 
 
+_MOST = 15
+_TOO_DAMPED = (
+    f"the damping number is above {_MOST}, with which less than a fifteenth of the speed comes back: the "
+    "duration would not be right to all digits"
+)
 _LOSSY = (hertz.e < 1, "e = 1: nothing is lost, so that nothing is damped")
 _FINITE = (hertz.e > Rational(1, 2**30), "e = 0: the damping number would have to be infinite")
 _FROM_ZERO_TO_ONE = (Integer(0), Integer(1), hertz.half)

@@ -113,8 +113,8 @@ def defined(expression: Any) -> Boolean:
     --------
     >>> from sympy import symbols
     >>> x, y = symbols("x y", positive=True)
-    >>> defined(x * y**-2.5 / (x - y))
-    Ne(x - y, 0)
+    >>> defined(x * y**-2.5 / (x - y)), defined((x - y) ** -2.5)
+    (Ne(x - y, 0), x - y > 0)
     >>> defined(log(x / y))
     True
     """
@@ -137,6 +137,8 @@ def _itself(expression: Any) -> Boolean:
     """Where an operation has a value if its arguments have."""
     if isinstance(expression, Pow):
         base, exponent = expression.args
+        if exponent.is_negative and exponent.is_noninteger:
+            return base > 0
         whole = S.true if exponent.is_integer else base >= 0
         if not exponent.is_number:
             whole = Or(whole, Eq(exponent, floor(exponent)))

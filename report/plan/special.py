@@ -1,4 +1,4 @@
-"""Euler's beta functions in terms that every engine has: products, powers and an exponential.
+"""Euler's beta functions and integrals in terms that every engine has: products, powers, an exponential.
 
 B(a, 1/2) is sqrt(pi) Gamma(a)/Gamma(a + 1/2). The argument is moved up, factor by factor, to where the series
 of the ratio in 1/w, w = z - 1/4, converges to the wanted digits.
@@ -19,25 +19,29 @@ from operator import mul
 from typing import Any
 
 import mpmath
-from sympy import Add, Expr, Float, Integer, Rational, bernoulli, beta, betainc, exp, pi, sqrt
+from sympy import Add, Expr, Float, Integer, Integral, Rational, bernoulli, beta, betainc, exp, pi, sqrt
+
+from .quadrature import in_nodes
 
 __all__ = ["EXACT", "SPECIAL", "in_elementary_terms"]
 
-SPECIAL = (beta, betainc)
+SPECIAL = (beta, betainc, Integral)
 
 DOUBLE, EXACT = 18, 60
 """The digits that are right: enough for doubles, and for the judge at 50."""
 
 
 def in_elementary_terms(expression: Any, digits: int = DOUBLE) -> Any:
-    """An expression without beta functions.
+    """An expression without beta functions and integrals.
 
-    `expression`: its beta functions are B(a, 1/2), a > 0, and that up to z, 0 <= z <= 1, of a fraction a.
+    `expression`: its beta functions are B(a, 1/2), a > 0, and that up to z, 0 <= z <= 1, of a fraction a; its
+    integrals are those of :func:`~loopsheet.report.plan.quadrature.in_nodes`.
     `digits`: how many are right.
     """
     if not expression.has(*SPECIAL):
         return expression
     expression = expression.replace(beta, lambda a, half: _beta(a, half, digits))
+    expression = expression.replace(Integral, lambda *parts: in_nodes(Integral(*parts), digits))
     return expression.replace(betainc, lambda a, half, low, z: _incomplete(a, half, low, z, digits))
 
 

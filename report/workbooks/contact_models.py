@@ -147,9 +147,11 @@ def _tables() -> Iterator[TableSpec]:
     yield TableSpec("durations", "Duration of the contact by the models", _of_all("t_{}", "t"))
     for name, title, told in (
         ("damping_numbers", "Damping numbers for the measured restitution", [each.c for each in AUTHORS]),
+        ("damping_factors", "Logarithm of the damping’s factor at separation", [each.q for each in AUTHORS]),
         ("damping_returns", "Restitution that they return", [each.e for each in AUTHORS]),
         ("damping_approaches", "Maximum approach with them", [each.x_m for each in AUTHORS]),
         ("damping_forces", "Greatest force with them", [each.F_m for each in AUTHORS]),
+        ("damping_durations", "Duration of the contact with them", [each.t for each in AUTHORS]),
     ):
         asked = ("e",) if name == "damping_returns" else ()
         yield TableSpec(name, title, (*asked, *(each.own.name for each in told if each)))

@@ -181,9 +181,9 @@ class _Laid:
             low, high = map(Rational, map(str, own.span))
             rule = Root(said, said, symbol, symbol, low, high, (low + high) / 2, steps=8)
             if solved is not None:
-                value, low, high, start = (part.xreplace(cells) for part in solved[2:])
-                form, below, above = solved.form.at(cells), Integer(-1), Integer(1)
-                rule = Root(said, form, solved.unknown, value, low, high, start, below, above, steps=8)
+                low, high, start = (part.xreplace(cells) for part in solved)
+                below, above = Integer(-1), Integer(1)
+                rule = Root(said, said, symbol, symbol, low, high, start, below, above, steps=8)
         column = replace(blank, rule=rule, requires=requires, limits=limits)
         self.columns[new.name] = column
         self.where |= {new: column.cell}
