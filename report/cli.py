@@ -126,13 +126,20 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
         raise UsageError(
             diagnose("LS617", reason="no command is named", known=listing(VERBS), suggestion=_FIRST)
         )
-    options, left = _parser().parse_known_args(arguments)
+    options, left = _parser().parse_known_args(_verb_first(arguments))
     if left and left[0].startswith("-"):
         raise unknown("option", left[0], options.options)
     if left:
         raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
     _in_order(options)
     return options
+
+
+def _verb_first(arguments: Sequence[str]) -> list[str]:
+    """A command line whose verb stands before the options that are the verb's."""
+    at = next((n for n, word in enumerate(arguments) if word in VERBS), 0)
+    own = [word for word in arguments[:at] if word in ("--traceback", "--version", "--help", "-h")]
+    return [*own, arguments[at], *(word for word in arguments[:at] if word not in own), *arguments[at + 1 :]]
 
 
 def _in_order(options: argparse.Namespace) -> None:

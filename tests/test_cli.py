@@ -117,6 +117,19 @@ def test_a_cell_without_a_value_is_a_finding(
     assert "#NOROOT!" not in whole[1]
 
 
+def test_an_option_may_stand_before_its_verb(capsys: pytest.CaptureFixture[str]) -> None:
+    told = []
+    for line in (
+        ["--no-cache", "show", "alpha_mean", "paper"],
+        ["show", "alpha_mean", "paper", "--no-cache"],
+    ):
+        assert main(line) == 0
+        told.append(capsys.readouterr().out)
+    assert told[0] == told[1]
+    assert main(["--no-cash", "show", "alpha_mean", "paper"]) == 2
+    assert "did you mean '--no-cache'?" in capsys.readouterr().err
+
+
 def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "alpha[1-2]", "paper"]) == 0
     out = capsys.readouterr().out

@@ -11,6 +11,7 @@ import pytest
 from loopsheet.derivations.contact import damping
 from loopsheet.derivations.contact.prescribed import AUTHORS, Author
 from loopsheet.report.cells.values import Values
+from loopsheet.report.document.placing import placed_in
 from loopsheet.report.impacts.damping import number_by, number_for
 from loopsheet.report.impacts.law import ForceLaw
 from loopsheet.report.impacts.simulation import simulate
@@ -132,3 +133,10 @@ def test_without_loss_there_is_no_number(tmp_path: Path) -> None:
     for author in AUTHORS:
         assert "nothing is lost" in again.cell(author.c.own.name, (1,)).reason
         assert np.isfinite(again.value[author.F_m.own.name][1:]).all()
+
+
+def test_the_sign_of_an_integral_is_no_factor() -> None:
+    """What is integrated stands behind it without a dot, also with numbers put in."""
+    sheet = Study(SHIPPED).computed.sheet
+    latex = placed_in(sheet["t_HC"], sheet, {}).latex
+    assert latex.partition(r"\int_")[2].partition("^")[2].startswith(r"{\ln(1 + \text{@2@})}\, (1 + ")

@@ -54,6 +54,9 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     `names`: as for :func:`name_latex`.
     """
 
+    after_integral = " "
+    """What stands between the sign of an integral and what is integrated."""
+
     def __init__(self, names: Mapping[str, str] | None = None) -> None:
         super().__init__({"order": "none", "ln_notation": True})
         self.names = dict(names or {})
@@ -280,7 +283,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     def _print_Integral(self, expr: Integral) -> str:
         text, ends = "", ""
         for variable, low, high in expr.limits:
-            text += rf"\int_{{{self._print(low)}}}^{{{self._print(high)}}} "
+            text += rf"\int_{{{self._print(low)}}}^{{{self._print(high)}}}{self.after_integral}"
             ends = rf" \, d{self._print(variable)}" + ends
         return text + self._body(expr.function) + ends
 

@@ -30,6 +30,8 @@ def placed_in(column: Column, sheet: Sheet, names: Mapping[str, str]) -> Placed:
 class _Placing(MathPrinter):
     """Prints an equation with a numbered place for every cell, size and running number in it."""
 
+    after_integral = r"\, "  # its end is no factor
+
     def __init__(self, column: Column, sheet: Sheet, names: Mapping[str, str]) -> None:
         super().__init__(names)
         self.column, self.sheet = column, sheet
