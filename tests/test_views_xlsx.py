@@ -242,6 +242,12 @@ def test_what_is_refused_is_told_beside_it(book: Any, grid: Grid) -> None:
     assert rule.formula == [f"NOT(ISNUMBER({checked[0]}8))"]
 
 
+def test_a_report_without_single_cells_has_its_alert_first() -> None:
+    report = Study(PAPER.parent / "kepler").computed
+    book = openpyxl.load_workbook(io.BytesIO(xlsx.render(report, grid_of(report))))
+    assert book["report"]["A3"].value.endswith("orbits!$A$3")
+
+
 def test_no_formula_names_a_given_cell_but_its_check(grid: Grid, book: Any) -> None:
     typed = {
         f"{prefix}{address}"

@@ -24,6 +24,8 @@ _BELOW = 1000
 """Rows below the last one in which numbers are looked for that are in no formula."""
 _LONGEST = 255
 """Characters of a text in a formula; Excel takes no more."""
+_SAME = 1e-12
+"""How far, of the sum of its terms, a sum may be off that spreadsheets form in another order."""
 _ROWS_TOLD = FIRST_ROW - 5
 """The row, from 0, of the cell that says whether the rows are those that the formulas are for."""
 _CODE, _FINE = CODES[Status.INPUT], "ok"
@@ -31,6 +33,8 @@ _MOVED = f"{_CODE} not the row as issued: its number, name or group is another o
 """What a row is told that was sorted to here, or whose words were edited."""
 _ORDER = f"{_CODE} rows that are not those as issued, by which groups, limits and errors go: "
 """What is told above all of them, with their number."""
+_SORTED = " has its numbers as issued in another order: what else belongs to a row stays where it was. "
+"""What is told there of a column that was sorted."""
 
 
 class GivenCells:
@@ -170,9 +174,28 @@ class GivenCells:
         notes = note.range(note.worksheet)
         others = f"COUNTIF({notes},{_text(_MOVED)})"
         order = f"{_text(_ORDER)}&{others}&{_text(f'; {again}')}"
-        return (
-            f'=IF(ROWS({notes})<>{note.rows},{moved},IF({others}>0,{order},IF(COUNT({below})>0,{more},"")))'
-        )
+        printed = [block for block in blocks if self.report.inputs.printed(block.name)]
+        each = (f'IF({self._sorted(block)},{_text(block.name + _SORTED)},"")' for block in printed)
+        alone = "&".join(each) or '""'
+        told = f"IF({others}>0,{order},IF(COUNT({below})>0,{more},{alone}))"
+        return f"=IF(ROWS({notes})<>{note.rows},{moved},{told})"
+
+    def _sorted(self, block: CellBlock) -> str:
+        """What says that a column has its numbers as issued, but not where they were, by three sums."""
+        place, printed = block.place, self.report.inputs.printed(block.name)
+        issued = [float((each.value - place.zero) / place.scale) if each else 0.0 for each in printed]
+        sure = self.grid[checked(block.name)].place
+        cells, first = sure.range(place.worksheet), sure.cell(0, place.worksheet)
+
+        def as_issued(told: str, power: int, weights: Sequence[int]) -> str:
+            terms = [weight * number**power for weight, number in zip(weights, issued, strict=True)]
+            return f"ABS({told}-({sum(terms)!r}))<={_SAME * sum(map(abs, terms))!r}"
+
+        rows = range(len(issued))
+        even = [1] * len(issued)
+        found = as_issued(f"SUM({cells})", 1, even), as_issued(f"SUMSQ({cells})", 2, even)
+        where = as_issued(f"SUMPRODUCT({cells},ROW({cells})-ROW({first}))", 1, rows)
+        return f"AND({','.join(found)},NOT({where}))"
 
     def summary(self) -> str:
         """The formula that tells on the first worksheet whether anything given is refused."""

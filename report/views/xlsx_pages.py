@@ -30,7 +30,7 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: G
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
     style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 22, 40))
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
-    row = 0
+    row = 2  # of what is told there, if there are no scalars
     for group in _groups(scalars):
         row, given = group[0].place.row, group[0].kind == "given"
         style.section(sheet, row - 2, _title(report, group), 7)

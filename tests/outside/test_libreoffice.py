@@ -32,6 +32,8 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "no exponent": {("beta", 0): None},
     "other parameters": {("beta", 0): 1.2, ("ball_diameter", 0): 10.0},
     "a test gives nothing back": {("e", 0): 0.0},
+    "speeds sorted": {("v", row): v for row, v in enumerate((4.993, 4.504, 4.089, 2.94, 2.334))},
+    "two e swapped": {("e", 2): 0.467, ("e", 3): 0.479},
     "a negative speed": {("v", 0): -2.0},
     "nothing of a ball": {("ball_diameter", 0): 0.0},
 }
@@ -182,6 +184,16 @@ def test_nothing_is_told_where_nothing_is_wrong(office: Office) -> None:
     assert [cells["tests"][f"H{row}"] for row in range(8, 13)] == ["ok"] * 5
     assert "A3" not in cells["report"]
     assert "A3" not in cells["tests"]
+
+
+@pytest.mark.parametrize("name", [*EDITS, *PASTED])
+def test_a_column_in_another_order_is_told(office: Office, name: str) -> None:
+    """Of no other edit: what is not as issued differs in its sum, or in that of its squares."""
+    column = {"speeds sorted": "v", "two e swapped": "e"}.get(name)
+    said = f"{column} has its numbers as issued in another order: "
+    for worksheet in ("tests", "report"):
+        told = office.read[name][worksheet].get("A3", "")
+        assert told.startswith(said) if column else "another order" not in told
 
 
 def test_the_edits_reach_every_error(office: Office) -> None:
