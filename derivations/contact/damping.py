@@ -185,7 +185,7 @@ with evaluate(False):
     )
     newton = Equation("", (m_red * xddot, -F), "Newton's law", Kind.ASSUMPTION, "Newton's law")
     falls = Equation(
-        "(L190)",
+        "(L172)",
         (sdot, -c * K * x**n / (m_red * v_0)),
         "Newton's law with (L101)",
         title="rate of the logarithm of the damping's factor",
@@ -202,7 +202,7 @@ with evaluate(False):
         "work by the logarithm of the factor",
     )
     deep = Equation(
-        "(L191)",
+        "(L173)",
         (x_s ** (n + 1), (n + 1) * m_red * v_0**2 * _fallen / (K * c**2)),
         "(L101) integrated up to that approach",
         title="approach by the logarithm of the damping's factor",
@@ -211,12 +211,12 @@ with evaluate(False):
     passing = Equation(
         "",
         (t, Integral(m_red * v_0 / (c * K) * (_scale * _fallen) ** (-n / (n + 1)), (s_d, -q, log(1 + c)))),
-        "the way of the logarithm over its rate (L190), with the approach (L191)",
+        "the way of the logarithm over its rate (L172), with the approach (L173)",
         Kind.ASSUMPTION,
         "way of the logarithm",
     )
     lasting = Equation(
-        "(L192)",
+        "(L174)",
         (
             t,
             m_red
