@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 
-from sympy import And, Basic, Eq, Expr, Indexed, Integral, Rational, Symbol, floor
+from sympy import And, Basic, Eq, Expr, Indexed, Integral, Pow, Rational, Symbol, floor
 from sympy.logic.boolalg import Boolean
 
 from ..derivations.reductions import REDUCTIONS, Member, OrderStatistic, member_of, taken_of
@@ -151,6 +151,12 @@ class Named:
                 raise SheetError(f"{taken} in a root has to be a column of its own", column.name)
             self._check_scope(column, taken_of(expression), over)
         elif isinstance(expression, Integral):
+            if not is_summed(expression):
+                raise SheetError(
+                    f"{column.name}: an integral is of a power between -1 and 0 of what is zero at both "
+                    f"ends, not of {expression.function}",
+                    column.name,
+                )
             for part in _at_ends(expression):
                 self._check_scope(column, part, axis)
         elif isinstance(expression, Indexed):
@@ -231,6 +237,15 @@ def references(expression: Basic, sums: Mapping[Expr, Axis], over: Axis | None =
     else:
         for argument in expression.args:
             yield from references(argument, sums, over)
+
+
+def is_summed(integral: Integral) -> bool:
+    """Whether engines sum an integral; that what it is a power of is zero at both ends is for its author."""
+    ((variable, *ends),) = integral.limits
+    match integral.function:
+        case Pow(base=inner, exp=Rational() as power):
+            return len(ends) == 2 and -1 < power < 0 and variable in inner.free_symbols
+    return False
 
 
 def _at_ends(integral: Integral) -> Iterator[Basic]:

@@ -19,22 +19,8 @@ from . import damping, hertz
 __all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solving", "Told", "course"]
 
 _TAKEN = (
-    "xdot",
-    "c",
-    "g",
-    "q",
-    "e_o",
-    "s_d",
-    "sdot",
-    "xddot",
-    "x_s",
-    "t_d",
-    "u_F",
-    "x_F",
-    "W_LN",
-    "W_HG",
-    "W_F",
-)
+    "xdot", "c", "g", "q", "e_o", "s_d", "sdot", "xddot", "x_s", "t_d", "u_F", "x_F", "W_LN", "W_HG", "W_F",
+)  # fmt: skip
 _LEFT_ASIDE = ("(L109)", "(L117)", "(L118)")
 _ELASTIC = replace(damping.VOCABULARY["W"], name="W_el", latex=r"W_{\mathrm{el}%s}")
 _FORCE = Quantity("F_damped", "force with damping", "N", r"F_{d%s}", (1.0, 5000.0))

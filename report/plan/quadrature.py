@@ -16,7 +16,7 @@ from math import ceil
 from typing import Any
 
 import mpmath
-from sympy import Add, Expr, Float, Integral, Pow, Rational
+from sympy import Add, Expr, Float, Integral, Rational
 
 __all__ = ["in_nodes"]
 
@@ -27,18 +27,17 @@ _A_DIGIT = Rational(10, 9)
 def in_nodes(integral: Integral, digits: int) -> Expr:
     """An integral as a sum.
 
+    `integral`: one of :func:`~loopsheet.report.named.is_summed`.
     `digits`: how many are right, if the integrand to the power -1/p, over the product of the distances from
     both ends, is regular and not zero in an ellipse around the way whose half axes sum to 2.8 halves of it.
     """
     ((variable, low, high),) = integral.limits
-    match integral.function:
-        case Pow(base=inner, exp=Rational() as power) if -1 < power < 0 and variable in inner.free_symbols:
-            terms = (
-                weight * inner.xreplace({variable: (1 - share) * low + share * high}) ** power
-                for share, weight in _rule(power, ceil(_A_DIGIT * digits), digits)
-            )
-            return (high - low) * Add(*terms)
-    raise NotImplementedError(f"{integral}: that of a power between -1 and 0 is known")
+    inner, power = integral.function.args
+    terms = (
+        weight * inner.xreplace({variable: (1 - share) * low + share * high}) ** power
+        for share, weight in _rule(power, ceil(_A_DIGIT * digits), digits)
+    )
+    return (high - low) * Add(*terms)
 
 
 @lru_cache
