@@ -540,22 +540,21 @@ def _shorten(text: str, limit: int) -> str:
 def suggest(word: str, known: Iterable[str]) -> str:
     """Return "did you mean ...?" for the nearest known word, or nothing.
 
-    >>> suggest("x-p", ["v", "e", "x_p"])
-    "did you mean 'x_p'?"
+    >>> suggest("x-p", ["v", "e", "x_p"]), suggest("u_e", ["e", "u(v)", "u(e)"])
+    ("did you mean 'x_p'?", "did you mean 'u(e)'?")
     """
     nearest = close(word, known)
     return f"did you mean '{nearest}'?" if nearest else ""
 
 
 def close(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is nearest to a misspelt one, if one is near."""
-    if len(word) > 60:  # difflib takes quadratic time, and no name of ours is as long
-        return None
+    """Return the known word whose letters are nearest to those of a misspelt one, if some are near."""
     import difflib  # only errors need it
 
-    by_lower = {name.lower(): name for name in reversed(list(known))}
-    found = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
-    return by_lower[found[0]] if found else None
+    names = [word, *known] if len(word) <= 60 else [""]  # it takes quadratic time, and no name is as long
+    letters = ["".join(filter(str.isalnum, name)).lower() for name in names]
+    found = difflib.get_close_matches(letters[0], letters[1:], n=1, cutoff=0.6)
+    return names[letters.index(found[0], 1)] if found else None
 
 
 def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:

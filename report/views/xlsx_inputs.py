@@ -25,7 +25,7 @@ _BELOW = 1000
 _LONGEST = 255
 """Characters of a text in a formula; Excel takes no more."""
 _SAME = 1e-12
-"""How far, of the sum of its terms, a sum may be off that spreadsheets form in another order."""
+"""How far, of the sum of its terms, a sum may be off by rounding: that of a thousand terms is off by less."""
 _ROWS_TOLD = FIRST_ROW - 5
 """The row, from 0, of the cell that says whether the rows are those that the formulas are for."""
 _CODE, _FINE = CODES[Status.INPUT], "ok"
@@ -139,11 +139,14 @@ class GivenCells:
         moved = f"IF(NOT(AND({','.join(same)})),{_text(_MOVED)}," if same else ""
         return f'={moved}IF(OR({",".join(refused)}),"{_CODE} "&{"&".join(told)},"{_FINE}"){")" * bool(same)}'
 
+    def _numbers(self, note: Place) -> list[CellBlock]:
+        """The numbers of the rows."""
+        return [block for block in self.grid.on(note.worksheet, "index") if block.place.rows == note.rows]
+
     def _same(self, note: Place, row: int) -> list[str]:
         """What says that a row is the one as issued: its number, its name, and the words of its groups."""
         here, words = note.worksheet, self.grid.words.get(note.worksheet, ())
-        numbers = [block for block in self.grid.on(here, "index") if block.place.rows == note.rows]
-        same = [f"{block.place.cell(row, here)}={block.values[row]:.0f}" for block in numbers]
+        same = [f"{block.place.cell(row, here)}={block.values[row]:.0f}" for block in self._numbers(note)]
         grouped = self.grid.groups.get(here, ())
         same += [
             each.same(each.own.cell(row, here), each.group.cell(each.rows[row], here)) for each in grouped
@@ -174,28 +177,36 @@ class GivenCells:
         notes = note.range(note.worksheet)
         others = f"COUNTIF({notes},{_text(_MOVED)})"
         order = f"{_text(_ORDER)}&{others}&{_text(f'; {again}')}"
-        printed = [block for block in blocks if self.report.inputs.printed(block.name)]
-        each = (f'IF({self._sorted(block)},{_text(block.name + _SORTED)},"")' for block in printed)
+        each = (
+            f'IF({self._sorted(block, number)},{_text(block.name + _SORTED)},"")'
+            for block in blocks
+            for number in self._numbers(note)
+            if self.report.inputs.printed(block.name)
+        )
         alone = "&".join(each) or '""'
         told = f"IF({others}>0,{order},IF(COUNT({below})>0,{more},{alone}))"
         return f"=IF(ROWS({notes})<>{note.rows},{moved},{told})"
 
-    def _sorted(self, block: CellBlock) -> str:
-        """What says that a column has its numbers as issued, but not where they were, by three sums."""
+    def _sorted(self, block: CellBlock, numbers: CellBlock) -> str:
+        """What says that a column has its numbers as issued, but not where they were.
+
+        Its sums of powers are as issued, and those of their products with the numbers of the rows are not;
+        the first of these alone is the same of 1, 3, 2 and of 2, 1, 3.
+        """
         place, printed = block.place, self.report.inputs.printed(block.name)
         issued = [float((each.value - place.zero) / place.scale) if each else 0.0 for each in printed]
-        sure = self.grid[checked(block.name)].place
-        cells, first = sure.range(place.worksheet), sure.cell(0, place.worksheet)
+        cells = self.grid[checked(block.name)].place.range(place.worksheet)
 
-        def as_issued(told: str, power: int, weights: Sequence[int]) -> str:
-            terms = [weight * number**power for weight, number in zip(weights, issued, strict=True)]
-            return f"ABS({told}-({sum(terms)!r}))<={_SAME * sum(map(abs, terms))!r}"
+        def as_issued(power: int, at: Sequence[float], *beside: str) -> str:
+            terms = [row * number**power for row, number in zip(at, issued, strict=True)]
+            told = ",".join((*[cells] * power, *beside))
+            return f"ABS(SUMPRODUCT({told})-({sum(terms)!r}))<={_SAME * sum(map(abs, terms))!r}"
 
-        rows = range(len(issued))
-        even = [1] * len(issued)
-        found = as_issued(f"SUM({cells})", 1, even), as_issued(f"SUMSQ({cells})", 2, even)
-        where = as_issued(f"SUMPRODUCT({cells},ROW({cells})-ROW({first}))", 1, rows)
-        return f"AND({','.join(found)},NOT({where}))"
+        same = [as_issued(power, [1.0] * len(issued)) for power in (1, 2, 3)]
+        rows = numbers.place.range(place.worksheet)
+        of_rows = [number for number in numbers.values if isinstance(number, float)]
+        where = [as_issued(power, of_rows, rows) for power in (1, 2)]
+        return f"AND({','.join(same)},NOT(AND({','.join(where)})))"
 
     def summary(self) -> str:
         """The formula that tells on the first worksheet whether anything given is refused."""

@@ -33,6 +33,7 @@ EDITS: dict[str, spreadsheets.Edits] = {
     "other parameters": {("beta", 0): 1.2, ("ball_diameter", 0): 10.0},
     "a test gives nothing back": {("e", 0): 0.0},
     "speeds sorted": {("v", row): v for row, v in enumerate((4.993, 4.504, 4.089, 2.94, 2.334))},
+    "three speeds moved on": {("v", 2): 4.993, ("v", 3): 4.089, ("v", 4): 4.504},
     "two e swapped": {("e", 2): 0.467, ("e", 3): 0.479},
     "a negative speed": {("v", 0): -2.0},
     "nothing of a ball": {("ball_diameter", 0): 0.0},
@@ -188,8 +189,8 @@ def test_nothing_is_told_where_nothing_is_wrong(office: Office) -> None:
 
 @pytest.mark.parametrize("name", [*EDITS, *PASTED])
 def test_a_column_in_another_order_is_told(office: Office, name: str) -> None:
-    """Of no other edit: what is not as issued differs in its sum, or in that of its squares."""
-    column = {"speeds sorted": "v", "two e swapped": "e"}.get(name)
+    """Of no other edit: what is not as issued differs in a sum of powers."""
+    column = {"speeds sorted": "v", "two e swapped": "e", "three speeds moved on": "v"}.get(name)
     said = f"{column} has its numbers as issued in another order: "
     for worksheet in ("tests", "report"):
         told = office.read[name][worksheet].get("A3", "")
