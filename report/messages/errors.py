@@ -528,13 +528,12 @@ def why(error: Exception, of: str = "") -> dict[str, Any]:
 def diagnose(code: str, at: Location | None = None, **fields: object) -> Diagnostic:
     """Make a finding from its code, its place and what its sentences name."""
     entry = CATALOGUE[code]
-    words = {name: _shorten(str(value), 60 if name == "text" else 400) for name, value in fields.items()}
+    words = {}
+    for name, value in fields.items():
+        text, most = str(value), 60 if name == "text" else 400
+        words[name] = visible(text if len(text) <= most else text[: most - 3] + "...")
     message, allowed, hint = (template.format_map(words) for template in entry[1:])
     return Diagnostic(code, message, at or Location(), allowed, hint)
-
-
-def _shorten(text: str, limit: int) -> str:
-    return visible(text if len(text) <= limit else text[: limit - 3] + "...")
 
 
 def suggest(word: str, known: Iterable[str]) -> str:
@@ -548,13 +547,15 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
 
 def close(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word whose letters are nearest to those of a misspelt one, if some are near."""
+    """Return the known word that is nearest to a misspelt one, if one is near; else by its letters alone."""
     import difflib  # only errors need it
 
     names = [word, *known] if len(word) <= 60 else [""]  # it takes quadratic time, and no name is as long
-    letters = ["".join(filter(str.isalnum, name)).lower() for name in names]
-    found = difflib.get_close_matches(letters[0], letters[1:], n=1, cutoff=0.6)
-    return names[letters.index(found[0], 1)] if found else None
+    for told in (str, lambda name: filter(str.isalnum, name)):
+        plain = ["".join(told(name)).lower() for name in names]
+        if found := difflib.get_close_matches(plain[0], plain[1:], n=1, cutoff=0.6):
+            return names[plain.index(found[0], 1)]
+    return None
 
 
 def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:
