@@ -547,13 +547,13 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
 
 def close(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is nearest to a misspelt one, if one is near; else by its letters alone."""
+    """Return the known word that is nearest to a misspelt one, if one is near; else one of the same letters."""
     import difflib  # only errors need it
 
     names = [word, *known] if len(word) <= 60 else [""]  # it takes quadratic time, and no name is as long
-    for told in (str, lambda name: filter(str.isalnum, name)):
+    for told, cutoff in ((str, 0.6), (lambda name: filter(str.isalnum, name), 1.0)):
         plain = ["".join(told(name)).lower() for name in names]
-        if found := difflib.get_close_matches(plain[0], plain[1:], n=1, cutoff=0.6):
+        if found := difflib.get_close_matches(plain[0], plain[1:], n=1, cutoff=cutoff):
             return names[plain.index(found[0], 1)]
     return None
 
