@@ -547,7 +547,7 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
 
 def close(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is nearest to a misspelt one, if one is near; else one of the same letters."""
+    """Return the known word that is near to a misspelt one, or else has the same letters, if one does."""
     import difflib  # only errors need it
 
     names = [word, *known] if len(word) <= 60 else [""]  # it takes quadratic time, and no name is as long
