@@ -161,20 +161,14 @@ with evaluate(False):
         "(L106) in terms of the factor exp(-q) = 1 - c e_o that damping leaves at separation",
         title="restitution by the factor of the damping at separation",
     )
-    back = Equation(
-        "(L168)",
-        (e_o, (1 - exp(-q)) / c),
-        "what that factor is",
-        title="restitution that is returned, by the factor at separation",
-        defines=e_o,
-    )
-    asked = Equation(
-        "(L169)",
-        (c, (1 - exp(-q)) / e_o),
-        "what that factor is",
-        title="damping number, by the factor at separation",
-        defines=c,
-    )
+
+    def _by_factor(number: str, of: Symbol, other: Symbol, what: str) -> Equation:
+        """The product of both is what the factor falls by up to separation."""
+        told = f"{what}, by the factor at separation"
+        return Equation(number, (of, (1 - exp(-q)) / other), "what that factor is", title=told, defines=of)
+
+    back = _by_factor("(L168)", e_o, c, "restitution that is returned")
+    asked = _by_factor("(L169)", c, e_o, "damping number")
 
     # The logarithm s of the factor 1 + c x'/v_0 falls from log(1 + c) at impact to -q at separation.
     factor = Equation(

@@ -147,8 +147,11 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
         F_m: peak.symbol, t: lasts.symbol,
     }  # fmt: skip
 
-    def told(of: Quantity, equation: Equation, *more: Any) -> Told:
-        return Told(of, replace(equation.at(here), defines=of.symbol), *more)
+    def told(of: Quantity, equation: Equation, **more: Any) -> Told:
+        return Told(of, replace(equation.at(here), defines=of.symbol), **more)
+
+    divides = member is None or not member.value.subs(typed, 0).is_finite
+    needs = (_LOSSY, _FINITE) if divides else (_LOSSY,)
 
     # The sides of (L120) are alike at q = 0, where the bodies part as fast as they met. Its other root is
     # between log(1 + c) and c; if the restitution is known, so that c is (1 - exp(-q))/e, between -log(e) and
@@ -156,22 +159,21 @@ def _author(mark: str, title: str, member: Equation | None) -> Author:
     if member is None:
         low, high = -log(typed), 1 / typed - typed
         by_typed = by_decay.at({c: asked.value.xreplace({e_o: typed})})
-        tells, factor, gives = told(number, asked), told(left, by_typed, Solving(low, high, high)), None
+        factor = told(left, by_typed, solved=Solving(low, high, high), needs=needs)
+        tells, gives = told(number, asked, needs=needs), None
     else:
         low, high = log(1 + number.symbol), number.symbol
-        tells, factor = Told(number, member), told(left, by_decay, Solving(low, high, high))
-        gives = told(returned, back)
-    divides = member is None or not member.value.subs(typed, 0).is_finite
-    needs = (_LOSSY, _FINITE) if divides else (_LOSSY,)
+        factor = told(left, by_decay, solved=Solving(low, high, high))
+        tells, gives = Told(number, member, needs=needs), told(returned, back)
     return Author(
         title,
-        tells._replace(needs=needs),
-        factor._replace(needs=needs if member is None else ()),
+        tells,
+        factor,
         gives,
         told(deepest, approach),
-        told(rate, peak_speed, Solving(*_FROM_ZERO_TO_ONE)),
+        told(rate, peak_speed, solved=Solving(*_FROM_ZERO_TO_ONE)),
         told(peak, greatest),
-        told(lasts, lasting, None, ((number.symbol <= _MOST, _TOO_DAMPED),)),
+        told(lasts, lasting, needs=((number.symbol <= _MOST, _TOO_DAMPED),)),
     )
 
 

@@ -542,20 +542,20 @@ def suggest(word: str, known: Iterable[str]) -> str:
     >>> suggest("x-p", ["v", "e", "x_p"]), suggest("u_e", ["e", "u(v)", "u(e)"])
     ("did you mean 'x_p'?", "did you mean 'u(e)'?")
     """
-    nearest = close(word, known)
-    return f"did you mean '{nearest}'?" if nearest else ""
+    return f"did you mean '{nearest}'?" if (nearest := close(word, known)) else ""
 
 
 def close(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is near to a misspelt one, or else has the same letters, if one does."""
+    """Return the known word that is nearest to a misspelt one, if one is near; else one of its letters."""
+    if len(word) > 60:  # difflib takes quadratic time, and no name of ours is as long
+        return None
     import difflib  # only errors need it
 
-    names = [word, *known] if len(word) <= 60 else [""]  # it takes quadratic time, and no name is as long
-    for told, cutoff in ((str, 0.6), (lambda name: filter(str.isalnum, name), 1.0)):
-        plain = ["".join(told(name)).lower() for name in names]
-        if found := difflib.get_close_matches(plain[0], plain[1:], n=1, cutoff=cutoff):
-            return names[plain.index(found[0], 1)]
-    return None
+    by_lower = {name.lower(): name for name in reversed(list(known))}
+    found = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
+    letters = [*filter(str.isalnum, word.lower())]
+    found += [name for name in by_lower if [*filter(str.isalnum, name)] == letters]
+    return by_lower[found[0]] if found else None
 
 
 def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:

@@ -45,7 +45,7 @@ def _rule(power: Rational, n: int, digits: int) -> tuple[tuple[Expr, Expr], ...]
     """Of each node its share of the way, and its part of the sum."""
     with mpmath.workdps(digits + 20):
         a = mpmath.mpf(power.p) / power.q
-        squares = [1 / (3 + 2 * a)]
+        squares = [1 / (3 + 2 * a)]  # as the others, but for a factor of both parts that may be zero
         squares += [k * (k + 2 * a) / ((2 * k + 2 * a) ** 2 - 1) for k in range(2, n)]
         norm = mpmath.fprod(squares) * mpmath.beta(a + 1, mpmath.mpf(1) / 2)
         found = []

@@ -69,7 +69,7 @@ class GivenCells:
             else:
                 decimals = -places[row] if taken else _decimals(each, place.scale)
                 form = style("fixed" if fixed else "input", open_format(decimals))
-                sheet.write_number(*at, float((each.value - place.zero) / place.scale), form)
+                sheet.write_number(*at, _number(each, place), form)
             if row < _MOST_NOTES:
                 sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
         every = (place.row, place.column, place.row + place.rows - 1, place.column)
@@ -194,7 +194,7 @@ class GivenCells:
         the first of these alone is the same of 1, 3, 2 and of 2, 1, 3.
         """
         place, printed = block.place, self.report.inputs.printed(block.name)
-        issued = [float((each.value - place.zero) / place.scale) if each else 0.0 for each in printed]
+        issued = [_number(each, place) if each else 0.0 for each in printed]
         cells = self.grid[checked(block.name)].place.range(place.worksheet)
 
         def as_issued(power: int, at: Sequence[float], *beside: str) -> str:
@@ -216,6 +216,11 @@ class GivenCells:
         refused = f'"{_CODE} given cells that are refused: "&{number}&". "'
         rows = [Place(worksheet, _ROWS_TOLD, 0).cell(0, SCALARS) for worksheet in self.grid.notes]
         return "=" + "&".join([f'IF({number}>0,{refused},"")', *rows])
+
+
+def _number(printed: Printed, place: Place) -> float:
+    """A printed number in the unit of its cell."""
+    return float((printed.value - place.zero) / place.scale)
 
 
 def _decimals(printed: Printed, scale: Fraction) -> int:
