@@ -263,11 +263,7 @@ class ExcelPrinter(Printer):
 
     def _print_Relational(self, expr: Expr) -> str:
         relation = {"==": "=", "!=": "<>"}.get(expr.rel_op, expr.rel_op)
-        return f"{self._side(expr.lhs)}{relation}{self._side(expr.rhs)}"
-
-    def _side(self, expr: Expr) -> str:
-        text = str(self._print(expr))
-        return f"({text})" if isinstance(expr, Add) else text
+        return f"{self._taken(expr.lhs)}{relation}{self._taken(expr.rhs)}"
 
     def _print_And(self, expr: Basic) -> str:
         parts = self._conditions(expr)
