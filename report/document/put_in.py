@@ -87,7 +87,7 @@ def _known(
 
 def _number(report: Report, name: str, row: int, value: float) -> str:
     """LaTeX of a number in a place; what would be misread there stands in brackets."""
-    return _bracketed(_written(_figure(report, name, row, value)))
+    return _bracketed(_written(_figure(report, name, value)))
 
 
 def _bracketed(latex: str) -> str:
@@ -100,7 +100,7 @@ def _written(figure: Numeral) -> str:
     return f"{'-' if figure.negative else ''}{digits}{power}"
 
 
-def _figure(report: Report, name: str, row: int, value: float) -> Numeral:
+def _figure(report: Report, name: str, value: float) -> Numeral:
     """A number in SI with so many digits that what comes out comes out on a pocket calculator, too."""
     is_given = not name or isinstance(report.sheet[name].rule, Given)
     short = f"{value:.{DIGITS + 2 if is_given else DIGITS}g}"
