@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 
-__all__ = ["Layout", "Precedent", "evenly", "how_large", "lay_out", "precedents"]
+__all__ = ["Layout", "Precedent", "evenly", "height", "how_large", "lay_out", "precedents"]
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,12 @@ def lay_out(
 
 def how_large(sheet: Sheet, layouts: Mapping[str, Layout]) -> int:
     """How many cells a sheet has."""
-    return sum(1 if column.axis is None else layouts[column.axis.name].size for column in sheet.columns)
+    return sum(height(column, layouts) for column in sheet.columns)
+
+
+def height(column: Column, layouts: Mapping[str, Layout]) -> int:
+    """How many rows a column has: one, if it is on no axis."""
+    return 1 if column.axis is None else layouts[column.axis.name].size
 
 
 def _given(axis: Axis, labels: Sequence[int], groups: Mapping[str, Sequence[int]] | None = None) -> Layout:

@@ -20,7 +20,7 @@ import numpy as np
 from mpmath.libmp import round_nearest, to_float
 from numpy.typing import NDArray
 
-from ..cells.layout import Layout, lay_out, precedents
+from ..cells.layout import Layout, height, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..plan.order import Word
@@ -222,7 +222,7 @@ class _Exact:
 
     def _column(self, column: Column, what: str = "value") -> tuple[list[Any], NDArray[np.uint8]]:
         """The values of a column, and their statuses."""
-        status, compute = self._rule(column, self._rows_of(column), what)
+        status, compute = self._rule(column, height(column, self.layouts), what)
         values: list[Any] = [None] * status.size
         for row in np.flatnonzero(status == Status.OK).tolist():
             try:
@@ -231,15 +231,12 @@ class _Exact:
                 status[row] = failed.status
         return values, status
 
-    def _rows_of(self, column: Column) -> int:
-        return 1 if column.axis is None else self.layouts[column.axis.name].size
-
     def _loop(self, loop: Loop) -> None:
         """Columns that rest on one another: passes until 50 digits stay."""
         for column in loop.columns:
             # Nothing is in error because of what is not there yet.
-            self.value[column.name] = [None] * self._rows_of(column)
-            self.status[column.name] = np.zeros(self._rows_of(column), dtype=np.uint8)
+            self.value[column.name] = [None] * height(column, self.layouts)
+            self.status[column.name] = np.zeros(height(column, self.layouts), dtype=np.uint8)
         while True:  # until all know of the errors before the loop that reach them
             known = [self.status[column.name] for column in loop.columns]
             for column in loop.columns:
@@ -317,7 +314,7 @@ class _Exact:
         """The rows that a column's sums run over, how many where some are left out, its inherited errors."""
         named = precedents(self.sheet, self.layouts, column)
         kept = rows_kept(named, self.layouts, self.status)
-        return kept, how_many(kept), inherited(named, kept, self.status, self._rows_of(column))
+        return kept, how_many(kept), inherited(named, kept, self.status, height(column, self.layouts))
 
     def _given(self, column: Column, row: int) -> Any:
         value = self.given[column.name][row]

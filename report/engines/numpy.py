@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.layout import Layout, lay_out, precedents
+from ..cells.layout import Layout, height, lay_out, precedents
 from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..quantity import SMALLEST
@@ -239,7 +239,7 @@ class Laid:
 
     def size(self, column: Column) -> int:
         """How many rows a column has."""
-        return 1 if column.axis is None else self.layouts[column.axis.name].size
+        return height(column, self.layouts)
 
 
 class _Run:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.layout import Layout, rows_of
+from ..cells.layout import Layout, height, rows_of
 from ..engines.intervals import Intervals, joined, whole
 from ..engines.numpy import Program
 from ..engines.numpy_enclosed import EnclosedRows
@@ -88,10 +88,6 @@ class _Rows:
         rows = rows_of(reference.index, reference.over or column.axis, self.layouts)
         return theirs if rows is None else theirs.take(rows, axis=-1)
 
-    def number(self, column: Column) -> int:
-        """How many rows a column has."""
-        return 1 if column.axis is None else self.layouts[column.axis.name].size
-
 
 class Enclosure(_Rows):
     """The cells of a sheet for given cells that lie in intervals.
@@ -142,7 +138,7 @@ class Enclosure(_Rows):
         """Columns that rest on one another: nothing is known of them."""
         program = self.program.loops[name]
         for each in (*program.iterated, *program.formulas):
-            rows = self.number(self.sheet[each])
+            rows = height(self.sheet[each], self.layouts)
             self.value[each], self.sure[each] = whole((rows,)), np.zeros(rows, dtype=bool)
 
     def root(self, name: str, arguments: Sequence[Any], requires: Sequence[Any] = ()) -> Intervals:
@@ -153,7 +149,7 @@ class Enclosure(_Rows):
             over = axis if argument in program.terms_of else None
             own = Intervals.of(each)
             cells[argument] = own if over is None else self.kept(name, over).every(own)
-        number = self.number(column)
+        number = height(column, self.layouts)
         shape = np.broadcast_shapes((number,), *(own.shape for own in cells.values()))
         if len(shape) < 2 or program.terms_of:
             return self._hold(column, *self._root(program, column, cells, number), requires)
@@ -170,7 +166,7 @@ class Enclosure(_Rows):
         for reference in self.sheet.named(column):
             theirs = self.known(reference, column)
             sure = sure & (theirs.all(axis=-1, keepdims=True) if reference.over else theirs)
-        shape = np.broadcast_shapes(found.shape, sure.shape, (self.number(column),))
+        shape = np.broadcast_shapes(found.shape, sure.shape, (height(column, self.layouts),))
         self.value[column.name] = found.broadcast(shape)
         self.sure[column.name] = np.broadcast_to(sure, shape)
         return self.value[column.name]
@@ -285,8 +281,8 @@ class _Slopes(_Rows):
     def root(self, name: str, _: Any, requires: Any = ()) -> Intervals:
         """The unknown of a root that its cell does not tell."""
         column = self.sheet[name]
-        self.value[name] = whole((self.number(column),))
-        self.sure[name] = np.zeros(self.number(column), dtype=bool)
+        self.value[name] = whole((height(column, self.layouts),))
+        self.sure[name] = np.zeros(height(column, self.layouts), dtype=bool)
         return self.value[name]
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.layout import how_large, precedents
+from ..cells.layout import height, how_large, precedents
 from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
 from ..inputs.published import PublishedValue
@@ -374,7 +374,7 @@ class Problem:
         number, layouts = len(self.unknowns), self.campaign.values.layouts
         rests: dict[str, NDArray[np.bool_]] = {}
         for column in self.sheet.columns:
-            size = 1 if column.axis is None else layouts[column.axis.name].size
+            size = height(column, layouts)
             rests[column.name] = np.zeros((number, size), dtype=bool)
             for n in self.rows.get(column.name, ()):
                 rests[column.name][n, self.unknowns[n].row] = True
