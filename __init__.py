@@ -10,6 +10,7 @@ __all__ = [
     "constant",
     "count",
     "derivative",
+    "drawing",
     "expected",
     "fit",
     "given",
@@ -30,6 +31,7 @@ __all__ = [
     "standing",
     "table",
     "total",
+    "trace",
     "uncertainty",
     "unknown",
 ]

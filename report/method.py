@@ -28,7 +28,7 @@ from .method_class import Method
 from .method_errors import current, named_next, told_together
 from .method_ledger import by, expected, numbered, sketch, standing, uncertainty
 from .method_lines import ComputedLine, FitLine, InputLine, PointsLine, UnknownLine, exact
-from .method_shown import plot, table
+from .method_shown import drawing, plot, table, trace
 from .named import name_of
 from .quantity import Bounds, behind
 
@@ -39,6 +39,7 @@ __all__ = [
     "constant",
     "count",
     "derivative",
+    "drawing",
     "expected",
     "fit",
     "given",
@@ -58,6 +59,7 @@ __all__ = [
     "standing",
     "table",
     "total",
+    "trace",
     "uncertainty",
     "unknown",
 ]

@@ -5,7 +5,8 @@ import re
 import pytest
 
 import loopsheet.report.method
-from loopsheet import Method, let, mean, measured, plot
+from loopsheet import Method, drawing, let, mean, measured, plot, trace
+from loopsheet.report.charts import BLUE, Series
 from loopsheet.report.column import SheetError
 
 
@@ -58,9 +59,40 @@ def test_of_what_is_positive_nothing_is_left_out() -> None:
     assert Law.workbook.figures[0].caption == "By length."
 
 
+def test_how_it_looks_is_said() -> None:
+    class Springs(Method):
+        """Springs."""
+
+        x = measured("m", "length")
+        F = measured("N", "force")
+        F_mean = let(mean(F), "mean force")
+        drawing("spring", "A spring.", number="1", alt="A coil.")
+        level = trace(x, F_mean, "the mean", value=F_mean)
+        plot(
+            trace(x, F, colour="#0072b2", named=True), level, F, labels=("stretch", ""), number="7", name="s"
+        )
+
+    drawn, shown = Springs.workbook.figures
+    assert (drawn.name, drawn.fixed, drawn.chart, drawn.alt) == ("spring", True, None, "A coil.")
+    assert (shown.name, shown.number, shown.caption) == ("s", "7", "Force over length.")
+    assert shown.chart is not None
+    assert (shown.chart.x, shown.chart.y) == ("stretch", "force")
+    assert shown.chart.series == (
+        Series("x", "F", "force", "points", "#0072b2", named=True),
+        Series("x", "F_mean", "the mean", "level", value="F_mean"),
+        Series("x", "F", "force", "points", BLUE, bars=True),
+    )
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [
+        ("plot()", "plot(x, y) is of two columns"),
+        ("plot(x)", "plot(x, y) is of two columns"),
+        ("plot(trace(m, x))", "m is a single number, which is no column to plot"),
+        ("plot(trace(x, m, style='line'))", "style='line' is none of m: a level is of one number"),
+        ("plot(trace(x, x, style='dots'))", "style='dots' is none of x"),
+        ("plot(trace(x, x, colour='red'))", "colour='red' is none: #rrggbb, as '#0072b2'"),
         ("plot(x, x**2)", "a name of the body can be shown, no formula"),
         ("plot(x, x, log='q')", "log='q' names no axes: x, y or xy"),
         ("plot(m, x)", "m is a single number, which is no column to plot"),
