@@ -109,7 +109,9 @@ class DeclaredFit:
         self.aside += tuple(column.name for column in stated.values())
         self.curve = Curve(
             fit.names["S"], axis.name, self._observed.name, fit.names["residual"], fit.names["s"],
-            tuple(map(str, sought)), own_size is not None, tuple(each.claim.label for each in fit.claims),
+            tuple(map(str, sought)), own_size is not None,
+            {each: fit.names[f"s_{each}"] for each in map(str, sought)},
+            tuple(each.claim.label for each in fit.claims),
         )  # fmt: skip
         made = {column.name: column for column in stated.values()}
         for each, said in sought.items():

@@ -194,6 +194,12 @@ class SquareSum:
     most."""
     deviation: str = ""
     """The column of how far each row lies off, in standard deviations."""
+    by_scatter: Mapping[str, str] = field(default_factory=dict)
+    """By the cell of what was fitted, the cell of its standard uncertainty by how far rows lie off."""
+
+    def freedom(self, rows: int) -> int:
+        """The degrees of freedom of so many rows."""
+        return self.each * rows - self.fitted
 
 
 @dataclass(frozen=True)
@@ -213,9 +219,15 @@ class Curve:
     """The cells that were fitted to them."""
     weighed: bool
     """Whether rows were weighed."""
+    by_scatter: Mapping[str, str] = field(default_factory=dict)
+    """By the cell of what was fitted, the cell of its standard uncertainty by the scatter."""
     slopes: tuple[str, ...] = ()
     """The labels of the claims that the sum of squares has no slope by each; none of a linear model, whose
     parameters have proved equations of their own."""
+
+    def freedom(self, rows: int) -> int:
+        """The degrees of freedom of so many rows."""
+        return rows - len(self.fitted)
 
 
 @dataclass(frozen=True)

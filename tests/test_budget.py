@@ -14,6 +14,7 @@ from loopsheet.report.document.material import Material
 from loopsheet.report.document.tables import Tables
 from loopsheet.report.document.tree import Bar, Code
 from loopsheet.report.engines import numpy as engine
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import Budget, Distributed
@@ -64,6 +65,21 @@ def test_the_test_that_matters_most_is_told_by_its_share(capsys: pytest.CaptureF
     most = max(tests, key=lambda n: tests[n])
     assert f"\ntest {most} matters most: {100 * tests[most]:.1f} % of the variance\n" in f"{out}\n"
     assert "matters most" not in told(capsys, "x_p[1]", "paper")
+
+
+def test_of_a_fitted_number_the_scatter_tells_another_one(capsys: pytest.CaptureFixture[str]) -> None:
+    out = told(capsys, "alpha_eiv", "paper")
+    assert "the scatter of what it was fitted to, u = 0.013, U = 0.042 with k = 3.18 for 95 % (Student" in out
+    found = json.loads(told(capsys, "alpha_eiv", "paper", "--level", "99", "--format", "json"))
+    assert (found["scatter"]["dof"], round(found["scatter"]["k"], 3)) == (3, 5.841)  # of tables of t
+    by_stated = json.loads(told(capsys, "u_birge_eiv", "paper", "--format", "json"))
+    assert found["scatter"]["u"] == by_stated["value"]
+    assert "scatter" not in told(capsys, "alpha_mean", "paper")
+
+
+def test_so_it_does_of_a_fit_in_a_method(capsys: pytest.CaptureFixture[str]) -> None:
+    found = json.loads(told(capsys, "b_1", str(PAPER.parent / "misra1a"), "--format", "json"))["scatter"]
+    assert (found["dof"], round(found["u"], 6)) == (12, 2.707008)  # as NIST certifies it
 
 
 def test_the_report_draws_the_shares_of_the_first_result(report: Report) -> None:

@@ -28,7 +28,7 @@ def tied(report: Report) -> bool:
 
 def freedom(squares: SquareSum, report: Report) -> int:
     """The degrees of freedom of a sum of squares: rows without a value do not count."""
-    return number(squares, report) - squares.fitted
+    return squares.freedom(report.values.rows_summed(squares.name, squares.axis))
 
 
 def number(squares: SquareSum, report: Report) -> int:

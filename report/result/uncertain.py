@@ -104,6 +104,23 @@ class Together:
 
 
 @dataclass(frozen=True)
+class Scattered:
+    """How uncertain a fitted number is by how far the rows lie off the curve: u times Birge's ratio."""
+
+    u: float
+    """In SI."""
+    dof: int
+    """Degrees of freedom: the squares that were summed less what was fitted."""
+    factor: float
+    """Coverage factor, of Student's t."""
+
+    @property
+    def expanded(self) -> float:
+        """The expanded uncertainty, in SI."""
+        return self.factor * self.u
+
+
+@dataclass(frozen=True)
 class Budget:
     """The uncertainty of one cell and where it comes from (JCGM 100, 5 and annex H)."""
 
@@ -148,6 +165,8 @@ class Budget:
     """The other sources, which do nothing at these values."""
     tied: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """By (str, str); correlations with these."""
+    scattered: Scattered | None = None
+    """Of what was fitted, where the rows have a scatter."""
 
     @property
     def estimates(self) -> list[list[Contribution]]:

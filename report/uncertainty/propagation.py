@@ -17,15 +17,24 @@ from numpy.typing import NDArray
 from ..cells.address import address
 from ..cells.layout import how_large, precedents
 from ..cells.values import Status, Values, rows_kept
-from ..distribution import LEVEL
+from ..distribution import LEVEL, Shape
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, Made
 from ..judge.sensitivity import Numbers
-from ..result.uncertain import Budget, Conformity, Contribution, Influence, Misfit, Together, Uncertainties
+from ..result.uncertain import (
+    Budget,
+    Conformity,
+    Contribution,
+    Influence,
+    Misfit,
+    Scattered,
+    Together,
+    Uncertainties,
+)
 from ..sheet import Column, Given, PairAxis, RepeatAxis
-from ..workbook import Curve
+from ..workbook import Curve, SquareSum
 from .conformity import conformity
 from .coverage import assigned, coverage
 from .freedom import of_sum, with_correlated
@@ -265,8 +274,20 @@ class Spread:
         own_parts = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         summed, least = tuple(self._summed(column)), _least(column)
         return Budget(
-            self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
-        )
+            self.values.address(name, row), name, label, *own_parts, summed,
+            least=least, idle=idle, tied=tied, scattered=self._scattered(name, level),
+        )  # fmt: skip
+
+    def _scattered(self, name: str, level: float) -> Scattered | None:
+        """How uncertain a number is by the scatter of the rows that it was fitted to."""
+        workbook, values = self.inputs.workbook, self.values
+        fits: tuple[SquareSum | Curve, ...] = (*workbook.squares, *workbook.curves)
+        for fitted in fits:
+            if (own := fitted.by_scatter.get(name)) is None or values.sheet[own].axis is not None:
+                continue
+            dof, u = fitted.freedom(values.rows_summed(fitted.name, fitted.axis)), values.scalar(own)
+            return Scattered(u, dof, coverage(Shape.STUDENT, None, dof, level)[0]) if u > 0 else None
+        return None
 
     def _summed(self, column: Column) -> Iterator[Together]:
         """The columns over pairs of rows that a column sums, of the rows that it sums."""

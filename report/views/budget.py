@@ -39,9 +39,8 @@ def sentence(report: Report, budget: Budget) -> str:
     told = f"{budget.cell} = {value.text}{unit}, u = {u.text}{unit}"
     if math.isnan(budget.factor):
         return told
-    level = f"{100 * budget.level:.12g} %"
     _, expanded = report.stated(budget.name, budget.value, budget.expanded)
-    return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {level}"
+    return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {_level(budget)}"
 
 
 def _blocks(
@@ -49,7 +48,7 @@ def _blocks(
 ) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
     said = [sentence(report, budget), *_of_limits(report, limited)]
-    told = [*notes(report, budget), *_of_draws(report, budget, drawn)]
+    told = [*notes(report, budget), *_of_scatter(report, budget), *_of_draws(report, budget, drawn)]
     if rows := [_row(report, budget, each) for each in budget.contributions]:
         yield from (said, TextTable(HEADER, rows), told)
     else:
@@ -60,6 +59,8 @@ def _as_json(
     report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
 ) -> str:
     """All digits, in SI."""
+    by = budget.scattered
+    scatter = {} if by is None else {"scatter": {"u": by.u, "dof": by.dof, "k": by.factor, "U": by.expanded}}
     monte_carlo = {} if drawn is None else {"monte_carlo": _drawn(drawn)}
     conformity = {"conformity": _conformity(limited[0])} if limited else {}
     return json.dumps(
@@ -81,6 +82,7 @@ def _as_json(
                 each.name: {"eigenvalues": each.eigenvalues, "rank": each.rank} for each in budget.summed
             },
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
+            **scatter,
             **monte_carlo,
             **conformity,
         },
@@ -175,6 +177,22 @@ def _together(summed: Together) -> str:
     return f"{cells} tell as much as {rank}: the eigenvalues of their correlation are {told}"
 
 
+def _of_scatter(report: Report, budget: Budget) -> Iterator[str]:
+    """What the rows say of a number that was fitted to them, whatever is stated of them."""
+    if (found := budget.scattered) is None:
+        return
+    unit = behind(report.shown[budget.name].unit)
+    u, expanded = (f"{report.sure(budget.name, each).text}{unit}" for each in (found.u, found.expanded))
+    yield (
+        f"by the scatter of what it was fitted to, u = {u}, U = {expanded} with k = "
+        f"{rounded(found.factor, 3).text} for {_level(budget)} (Student's t, {found.dof} degrees of freedom)"
+    )
+
+
+def _level(budget: Budget) -> str:
+    return f"{100 * budget.level:.12g} %"
+
+
 def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iterator[str]:
     """What Monte Carlo told."""
     if drawn is None:
@@ -209,7 +227,7 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     if math.isnan(drawn.symmetric[0]):
         yield "no interval is told: too many draws have no value"
         return
-    level = f"{100 * budget.level:.12g} %"
+    level = _level(budget)
     for name, (low, high) in (("equal tails", drawn.symmetric), ("the shortest", drawn.shortest)):
         around = ""  # where the estimate lies outside, it has no such distances
         if low <= budget.value <= high:

@@ -434,7 +434,11 @@ WORKBOOK = replace(
     SoftImpact.workbook,
     parameters=(*_BODIES, _BETA, _POINTS),  # in the order in which they are typed
     least=2,
-    squares=(SquareSum("chi2_eiv", axis="tests", fitted=2, deviation="z_eiv"),),
+    squares=(
+        SquareSum(
+            "chi2_eiv", axis="tests", fitted=2, deviation="z_eiv", by_scatter={"alpha_eiv": "u_birge_eiv"}
+        ),
+    ),
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
     published_as={
         "Table 2": "exponent of every pair",
