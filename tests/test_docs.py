@@ -26,7 +26,7 @@ from loopsheet.report.files.form import Form
 from loopsheet.report.files.manifest import Manifest
 from loopsheet.report.files.values import Result
 from loopsheet.report.inputs.keys import ANY, TABLES
-from loopsheet.report.messages.errors import CATALOGUE
+from loopsheet.report.messages.catalogue import CATALOGUE
 from loopsheet.report.verbs import VERBS
 
 ROOT = Path(__file__).parent.parent

@@ -26,8 +26,8 @@ from loopsheet.report.inputs.folders import PAPER, built_from, report_folder
 from loopsheet.report.inputs.inputs import load
 from loopsheet.report.machine.staging import own, replaced
 from loopsheet.report.messages import errors
+from loopsheet.report.messages.catalogue import CATALOGUE
 from loopsheet.report.messages.errors import (
-    CATALOGUE,
     Diagnostic,
     ForeignCode,
     InputError,
@@ -358,6 +358,9 @@ CASES: dict[str, Callable[[], None]] = {
     "LS508": lambda: campaign(published=pinned(",1.234 -> 1.258")),
     "LS509": published("alpha", "q(alpha)"),
     "LS510": toml("[published]\n", '[published]\nfree = ["x_p"]\n'),
+    "LS511": lambda: campaign(
+        published=PUBLISHED + "Table 3,x_m,3,55.34,um,,\nTable 2,alpha,1-3,1.275,1,,\n"
+    ),
     "LS601": new_in_a_file,
     "LS602": new_on_a_file,
     "LS603": new_in_a_used_folder,

@@ -482,6 +482,7 @@ def test_an_erratum_is_of_a_measured_cell(cell: str, code: str, findings: Findin
     [
         ("T,alfa,1-2,1,1,,", "LS505"),
         ("T,alpha,1-3,1,1,,", "LS506"),
+        ("T,alpha,1-3,1,1,,\nT,alpha,2-3,1,1,,\nT,alpha,1-2,1,1,,", "LS511"),
         ("T,alpha,,1,1,,", "LS506"),
         ("T,mean,1,1,1,,", "LS506"),
         ("T,alpha,1-2,1,mm,,", "LS422"),

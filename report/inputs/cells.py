@@ -88,6 +88,6 @@ def check_cells(
     check_expected(kept.expected, kept.tables, cells, findings, words)
     written = {each.at: each for each in reversed(kept.limits)}  # what is wrong with a line is told once
     check_limits([*reversed(written.values())], cells, findings, words)
-    check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.measured, findings, words)
+    check_published((*kept.published, *kept.published_u), kept.free_at, cells, kept.tables, findings, words)
     findings.check()
     return kept

@@ -19,6 +19,7 @@ from .number_text import NumberError, read_number, read_printed, with_uncertaint
 
 if TYPE_CHECKING:
     from ..quantity import Printed
+    from .measurements import Measurements
     from .sources import Source
 
 __all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published", "unit_fits"]
@@ -238,7 +239,7 @@ def check_published(
     published: Sequence[PublishedValue],
     free: Mapping[str, Location],
     cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
-    measured: Collection[str],
+    tables: Collection[Measurements],
     findings: Findings,
     words: Words = NO_WORDS,
 ) -> None:
@@ -251,15 +252,16 @@ def check_published(
     cells : mapping of str to (str, collection of tuple of int)
         For each cell its unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
         fixed, such as ``N/m^alpha``, has no other that it converts to.
-    measured : collection of str
-        The columns of the table of measurements.
+    tables : collection of Measurements
+        The tables of measurements.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.
     words
         As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """
+    gone = _of_rows_that_are_gone(published, cells, tables, findings, words)
     for name, place in free.items():
-        if name in measured:
+        if any(name in table.measured for table in tables):
             findings.add("LS510", place, text=name)
         elif name not in cells:
             known, suggestion = listing(cells, most=24), suggest(name, cells)
@@ -277,7 +279,7 @@ def check_published(
             continue
         unit, _ = cells[value.columns[0]]
         of_rows = value.columns if value.about and value.about.kind == "r" else value.columns[:1]
-        for name in of_rows if "index" not in value.unread else ():
+        for name in of_rows if "index" not in value.unread and value not in gone else ():
             if value.word or value.index not in cells[name][1]:
                 at, text = value.places.get("index"), value.word or index_text(value.index)
                 known = _indices(cells[name][1], words.get(name, {}))
@@ -287,6 +289,34 @@ def check_published(
         if "unit" not in value.unread:
             at, width = value.places.get("unit"), value.about is not None and value.about.is_width
             unit_fits(value.printed.unit, unit, value.cell, at, findings, width=width)
+
+
+def _of_rows_that_are_gone(
+    published: Sequence[PublishedValue],
+    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    tables: Collection[Measurements],
+    findings: Findings,
+    words: Words,
+) -> list[PublishedValue]:
+    """Several values of one row that the table has not: told once, in place of the index of each."""
+    if len(tables) != 1:
+        return []  # and a number is not that of one row
+    (table,) = tables
+    there, of = set(table.tests), dict[int, list[PublishedValue]]()
+    for value in published:
+        name = value.columns[0]
+        if name not in cells or value.word or "index" in value.unread:
+            continue
+        is_of_rows = name in table.measured or not words.get(name)  # groups have words
+        if is_of_rows and all(there.issuperset(index) for index in cells[name][1]):
+            for test in set(value.index) - there:
+                of.setdefault(test, []).append(value)
+    several = {test: values for test, values in of.items() if len(values) > 1}
+    for test, values in several.items():
+        known = f"{table.row} {listing(map(str, sorted(there)))}"
+        told = {"file": table.file, "row": f"{table.row} {test}", "number": len(values), "known": known}
+        findings.add("LS511", values[0].places.get("index"), **told)
+    return [value for values in several.values() for value in values]
 
 
 def unit_fits(

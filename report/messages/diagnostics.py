@@ -42,7 +42,7 @@ class Diagnostic:
     """One finding: a stable code, a sentence, a place, what was allowed and what to try."""
 
     code: str
-    """The key of :data:`loopsheet.report.messages.errors.CATALOGUE`; it never changes its meaning."""
+    """The key of :data:`loopsheet.report.messages.catalogue.CATALOGUE`; it never changes its meaning."""
     message: str
     """What happened."""
     at: Location = Location()
