@@ -9,11 +9,9 @@ rows than those of the estimate has none: it is a value of another estimator.
 from __future__ import annotations
 
 import math
-import os
-from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +34,6 @@ from .sources import correlated, given, sources
 __all__ = ["BEYOND", "MOST", "by_draws", "draw", "least"]
 
 Array = NDArray[np.float64]
-T = TypeVar("T")
-R = TypeVar("R")
 
 MOST = 1_000_000
 """Draws, at most, where nobody asks for another number."""
@@ -104,17 +100,13 @@ def draw(
     told: list[tuple[float, ...]] = []
     lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
 
-    def computed(batch: dict[str, Array]) -> tuple[Array, int, tuple[float, ...]]:
-        """What has a value, how many have none, and what these tell."""
-        own, there = drawn.of(batch, row)
-        return own[there], own.size - int(there.sum()), _told(own[there], budget.level)[0]
-
-    for number, (own, without, tells) in enumerate(_ahead(computed, drawn.batches(size, most)), start=1):
+    for number, batch in enumerate(drawn.batches(size, most), start=1):
         step(f"drawing {number * size} times")
-        found.append(own)
-        lost += without
-        if own.size:
-            told.append(tells)
+        own, there = drawn.of(batch, row)
+        found.append(own[there])
+        lost += own.size - found[-1].size
+        if found[-1].size:
+            told.append(_told(found[-1], budget.level)[0])
         if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
             break
     return _distributed(np.concatenate(found), lost, budget, tolerance, told)
@@ -150,28 +142,6 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     told, law = f"{SOME} draws: {why}", Samples(errors)
     factor = law.half(budget.level)
     return replace(budget, factor=factor, because=told, shape=Shape.SAMPLES, law=law, draws=SOME)
-
-
-def _ahead(function: Callable[[T], R], given: Iterable[T]) -> Iterator[R]:
-    """What a function returns of each, in their order; every processor computes some while one is looked at.
-
-    What is given is made one after the other, here: random numbers are the same for any number of processors.
-    """
-    from concurrent.futures import Future, ThreadPoolExecutor
-
-    known = hasattr(os, "sched_getaffinity")
-    processors = len(os.sched_getaffinity(0)) if known else os.cpu_count() or 1
-    begun: deque[Future[R]] = deque()
-    pool = ThreadPoolExecutor(processors)
-    try:
-        for one in given:
-            begun.append(pool.submit(function, one))
-            if len(begun) > processors:
-                yield begun.popleft().result()
-        while begun:
-            yield begun.popleft().result()
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 class _Draws:
