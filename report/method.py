@@ -263,7 +263,7 @@ def required(
         raise SheetError(f"{stays!s} {said}: a limit is of two formulas, p < 1.6 * Y")
     column = {"latex": latex, "positive": False}
     margin = (exact(stays.gts - stays.lts),)
-    because = because or f"what is left of {stays}"
+    because = because or "what is left to the limit: it is met from 0 on"
     return named_next(
         ComputedLine(f"{meaning}, margin", unit, column, margin, label, because, is_margin=True)
     )

@@ -60,6 +60,7 @@ class _Declaring(type):
         found = super().__new__(cls, name, bases, dict(body))
         if bases:
             assert isinstance(body, WatchedBody)
+            body.refuse_nameless()
             if body.wrong:
                 raise body.first_wrong
             CURRENT.set(None)

@@ -50,11 +50,19 @@ class WatchedBody(MethodBody):
         super().__init__(rows, index, size, ledger)
         self.wrong: dict[int, Exception] = {}
         """By line, in the order in which they stand; of a line the first alone."""
+        self.said_in = dict[int, int]()  # of what a word declares, by its identity, the line
 
     def failed(self, error: Exception, line: int) -> Any:
         """Remember an error; what stands for what the line declares."""
         self.wrong.setdefault(line, error)
         return _Failed("_")
+
+    def refuse_nameless(self) -> None:
+        """Remember what was declared and has no name."""
+        for said in self.unnamed:
+            what = f"'{said.meaning}'" if isinstance(said, Declaration) else "a fit"
+            error = SheetError(f"{what} has no name: a line is a name, =, and what is declared")
+            self.failed(error, self.said_in[id(said)])
 
     @property
     def first_wrong(self) -> Exception:
@@ -122,10 +130,13 @@ def told_together(word: Callable[P, T]) -> Callable[P, T]:
             if getattr(word, "__name__", "") == "fit":
                 body.without_fit(*arguments, *named.values())
             return cast(T, _Failed("_"))
+        line = sys._getframe(1).f_lineno
         try:
-            return word(*arguments, **named)
+            found = word(*arguments, **named)
         except (SheetError, TypeError) as error:
-            return cast(T, body.failed(error, sys._getframe(1).f_lineno))
+            return cast(T, body.failed(error, line))
+        body.said_in[id(found)] = line
+        return found
 
     return said
 

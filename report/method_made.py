@@ -12,7 +12,6 @@ from .axis import Axis
 from .charts import Drawn
 from .column import Column, SheetError
 from .method_body import MethodBody
-from .method_lines import Declaration
 from .quantity import Bounds
 from .sheet import Sheet
 from .workbook import Measured, Parameter, RowTable, Workbook, tables_of
@@ -64,9 +63,6 @@ def workbook_of(
         Of the class.
     """
     entries = tuple(body.entries)
-    for line in body.unnamed:
-        what = f"'{line.meaning}'" if isinstance(line, Declaration) else "a fit"
-        raise SheetError(f"{what} has no name: a line is a name, =, and what is declared")
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)

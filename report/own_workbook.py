@@ -185,10 +185,16 @@ def _hint(error: BaseException) -> str:
     from .method_lines import FUNCTIONS
 
     match error:
+        case SheetError() if "argument of a function must be a pure number" in str(error):
+            return "divide it by one of its kind, log(c / c_0): c_0 given, default='1 mol/L', exact=True"
+        case SheetError() if re.search(r"cannot add (1 and|.* and 1 in)", str(error)):
+            return 'what is declared without a unit is a pure number: unknown("time constant", "s") has one'
         case SheetError():
             return ""
         case NameError(name=name) if name in (*FUNCTIONS, "sqrt", "pi"):
             return f"write above: from sympy import {name}"
+        case NameError(name=name) if name in _words():
+            return f"write above: from loopsheet import {name}"
         case NameError(name=name):
             said = "a name stands for its cell from the line on where it is declared"
             found = f"; what a root or a fit finds is announced above it, {name} = unknown(...)"

@@ -90,6 +90,15 @@ z = measured("mm")
 """,
         {0: "say what it is, behind the unit: 'mm', 'length of the rod'"},
     ),
+    "what has no name": (
+        """\
+let(2 * x, "twice as long")
+required(y < 1, "not too long")
+fit(y, K * x)
+a = let(2 * x, "twice as long")
+""",
+        {0: "'twice as long' has no name", 1: "from loopsheet import required", 2: "a fit has no name"},
+    ),
     "a line that Python refuses": (
         """\
 a = let(log(x), "logarithm of a length")

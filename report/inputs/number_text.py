@@ -35,6 +35,7 @@ _NOT_FINITE = frozenset(
     {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
 )
 _CONCISE = re.compile(r"(?P<digits>[^()]*)\((?P<u>[0-9]+)\)")
+_POWER_BEHIND = re.compile(r"([^()]*)(\([0-9]+\))([eE][+-]?[0-9]+)")
 _LONGEST = 100
 _TOP = 300
 _LARGEST = Fraction(10) ** _TOP
@@ -112,7 +113,9 @@ def _why_not(text: str) -> NumberError:
         thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
         return NumberError("LS402", text=text, example=plain, thousands=thousands)
     suggestion = ""
-    if with_uncertainty(text):
+    if behind := _POWER_BEHIND.fullmatch(text):
+        suggestion = f"the power of ten stands before its uncertainty: {behind[1]}{behind[3]}{behind[2]}"
+    elif with_uncertainty(text):
         suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
     elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"
