@@ -5,6 +5,7 @@ Nothing here knows a model, a number or an output.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +17,38 @@ if TYPE_CHECKING:
     from sympy import Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "RepeatAxis"]
+__all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "RepeatAxis", "plural", "singular"]
+
+_ALIKE = ("series", "species")
+"""Words of which there are as many of one as of several."""
+_LONGER = "(?:ss|x|z|ch|sh|lens|gas|bias)"
+"""How words end that take es."""
+
+
+def plural(row: str) -> str:
+    """What several rows are called.
+
+    >>> [plural(word) for word in ("specimen", "lens", "batch", "body", "day", "series")]
+    ['specimens', 'lenses', 'batches', 'bodies', 'days', 'series']
+    """
+    if row.endswith(_ALIKE):
+        return row
+    if re.search("[^aeiou]y$", row):
+        return f"{row[:-1]}ies"
+    return f"{row}es" if re.search(f"{_LONGER}$", row) else f"{row}s"
+
+
+def singular(rows: str) -> str:
+    """What one row is called, of the word for several.
+
+    >>> [singular(word) for word in ("specimens", "lenses", "phases", "masses", "bodies", "series", "data")]
+    ['specimen', 'lens', 'phase', 'mass', 'body', 'series', 'data']
+    """
+    if rows.endswith(_ALIKE) or re.search(f"{_LONGER}$", rows):
+        return rows
+    if re.search("[^aeiou]ies$", rows):
+        return f"{rows[:-3]}y"
+    return rows[:-2] if re.search(f"{_LONGER}es$", rows) else rows.removesuffix("s") or rows
 
 
 @dataclass(frozen=True)
@@ -34,7 +66,7 @@ class Axis:
     @property
     def row(self) -> str:
         """What one of its rows is called: ``test`` of ``tests``."""
-        return self.name.removesuffix("s") or self.name
+        return singular(self.name)
 
     @cached_property
     def index_name(self) -> str:

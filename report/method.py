@@ -22,6 +22,7 @@ from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, Stri
 from ..derivations.reductions import Median
 from ..derivations.vocabulary import Quantity
 from . import method_algebra
+from .axis import plural
 from .codata import adjusted
 from .column import SheetError
 from .method_class import Method
@@ -458,7 +459,7 @@ def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", e
     by : str
         The column of words.
     rows : str
-        What the groups are called, ``specimens``; the column with an s, without.
+        What the groups are called, ``specimens``; the plural of the column, without.
     index, size : str
         What the running number of a group is called in formulas, and how many there are.
     example : str
@@ -469,7 +470,7 @@ def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", e
     SheetError
         A name is taken, or no name.
     """
-    return current().grouped(by, rows or f"{by}s", index, size, example)
+    return current().grouped(by, rows or plural(by), index, size, example)
 
 
 def pairs(

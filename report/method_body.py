@@ -14,7 +14,7 @@ from ..derivations.equation import Derivation, Equation, Kind, Ledger
 from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
 from ..derivations.unit_text import of_differences
 from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
-from .cells.units import named_unit_of
+from .cells.units import as_its_parts
 from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
 from .differences import is_difference
 from .fitted import DeclaredFit, told_apart
@@ -115,7 +115,7 @@ class MethodBody(dict[str, Any]):
         if over is None:
             raise SheetError(f"{taken.word}() is taken over rows, and {cell} is the same for all of them")
         if not isinstance(cell, Indexed):
-            raise SheetError(f"{taken.word}() is of a column, not of {cell}: let(...) that be one first")
+            raise SheetError(f"{taken.word}() is of a column, not of {cell}: name that first, off = let(...)")
         if of in self.groups and over is of:
             raise SheetError(
                 f"{cell} is one number of each {of.row}: {taken.word}() of={of} has no rows to choose from"
@@ -628,7 +628,7 @@ class MethodBody(dict[str, Any]):
             return self._as_difference(replace(column, rule=rule), said_so=True)
         column = replace(column, rule=Formula(equation))
         if not said.unit:
-            column = replace(column, unit=named_unit_of({**self.columns, name: column}, column))
+            column = as_its_parts(self.columns, column)
         return self._as_difference(column, said_so=not column.display.startswith("like "))
 
     def _as_difference(self, column: Column, said_so: bool) -> Column:

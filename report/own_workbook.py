@@ -188,7 +188,7 @@ def _hint(error: BaseException) -> str:
         case SheetError() if "argument of a function must be a pure number" in str(error):
             return "divide it by one of its kind, log(c / c_0): c_0 given, default='1 mol/L', exact=True"
         case SheetError() if re.search(r"cannot add (1 and|.* and 1 in)", str(error)):
-            return 'what is declared without a unit is a pure number: unknown("time constant", "s") has one'
+            return 'a number has no unit; what is declared has, given("mm", ...) and unknown("length", "mm")'
         case SheetError():
             return ""
         case NameError(name=name) if name in (*FUNCTIONS, "sqrt", "pi"):

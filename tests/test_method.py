@@ -258,8 +258,8 @@ def test_sums_and_extremes_may_be_called_as_in_python() -> None:
 @pytest.mark.parametrize(
     ("formula", "said"),
     [
-        ("max(2 * x)", "max() is of a column, not of 2*x[k]: let(...) that be one first"),
-        ("median(x - min(x))", "let(...) that be one first"),
+        ("max(2 * x)", "max() is of a column, not of 2*x[k]: name that first, off = let(...)"),
+        ("median(x - min(x))", "name that first, off = let(...)"),
         ("min(m)", "min() is taken over rows, and m is the same for all of them"),
         ("median(max(x))", "median() is taken over rows, and Greatest(x[k], (k, 1, n)) is the same"),
         ("max(3)", "max() is taken over rows, and 3 is the same"),

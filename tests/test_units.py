@@ -5,6 +5,7 @@ import re
 import pytest
 from sympy import Abs, And, Expr, Max, Min, Piecewise, Rational, Sum, Symbol, exp, log, sign, sin, sqrt
 
+from loopsheet import Method, given, let, mean, measured
 from loopsheet.derivations import soft_impact as model
 from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Greatest, Least, Median
@@ -281,3 +282,28 @@ def test_wrong_variants_of_the_papers_formulas_are_caught(case: str) -> None:
 def test_the_equations_of_the_ledger_give_the_sheets_formulas() -> None:
     assert NAMED["x_m"].equation is not None
     assert NAMED["x_m"].equation.origin == model.LEDGER["(L3)"]
+
+
+def test_a_result_is_shown_as_what_of_its_kind_it_is_computed_from() -> None:
+    class Rods(Method):
+        """Rods."""
+
+        a = measured("mm", "length")
+        b = measured("um", "width")
+        F = measured("kN", "force")
+        T = measured("degC", "temperature")
+        phi = given("deg", "angle")
+        longer = let(a - mean(a), "length beyond the mean")
+        twice = let(2 * abs(longer), "twice as much")
+        both = let(a + b, "length and width")
+        area = let(a * b, "area")
+        work = let(a * F, "work")
+        across = let(sin(phi), "sine")
+        T_m = let(mean(T), "mean temperature")
+        T_d = let(T - T_m, "deviation from it")
+        stated = let(a / 2, "half of it", "cm")
+
+    shown = {column.name: column.display for column in Rods.workbook.sheet(frozenset({"phi"})).columns}
+    assert (shown["longer"], shown["twice"], shown["T_m"]) == ("like a", "like longer", "like T")
+    assert shown["both"] == shown["area"] == shown["work"] == shown["across"] == ""
+    assert (shown["T_d"], shown["stated"]) == ("delta_degC", "cm")

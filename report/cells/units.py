@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 from sympy import Basic, Expr, Indexed, sstr
 
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
-from ...derivations.unit_text import well_named
+from ...derivations.unit_text import UnitError, parse_open, well_named
 from ...derivations.vocabulary import NO_WORDS
+from ..column import written_in
 from ..named import name_of
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
@@ -22,6 +24,7 @@ from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 __all__ = [
     "Dimension",
     "DimensionMismatch",
+    "as_its_parts",
     "check",
     "check_column",
     "dimension_of_unit",
@@ -158,6 +161,30 @@ def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:
     """The same in names that stand in the units of the columns, as N/m where there are newtons."""
     units = (each.display or each.unit for each in columns.values())
     return well_named(unit_of(columns, column), [unit for unit in units if not unit.startswith("like ")])
+
+
+def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
+    """A column with the unit that its formula gives, and shown as what of that kind it is computed from.
+
+    Where that is shown in several units it is shown in SI; so is a pure number: a sine is no angle.
+    """
+    column = replace(column, unit=named_unit_of({**columns, column.name: column}, column))
+    own = dict(dimension_of_unit(column.unit))
+    if column.display or not own:
+        return column
+    assert isinstance(column.rule, Formula)
+    named = {str(symbol) for symbol in column.rule.expression.free_symbols}
+    alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
+    shown = {written_in(each, columns) for each in alike}
+    return replace(column, display=f"like {alike[0].name}") if len(shown) == 1 else column
+
+
+def _kind(column: Column) -> dict[str, object] | None:
+    """What a column is of; nothing where that hangs on a quantity, or its zero is not that of SI."""
+    try:
+        return None if parse_open(column.unit).zero else dict(dimension_of_unit(column.unit))
+    except (DimensionMismatch, UnitError):
+        return None
 
 
 def _expect(checker: _Checker, expression: Expr, own: Dimension) -> None:
