@@ -14,7 +14,7 @@ from sympy import Basic, Expr, Indexed, sstr
 
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
-from ...derivations.unit_text import UnitError, parse_open, well_named
+from ...derivations.unit_text import well_named
 from ...derivations.vocabulary import NO_WORDS
 from ..column import written_in
 from ..named import name_of
@@ -180,10 +180,10 @@ def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
 
 
 def _kind(column: Column) -> dict[str, object] | None:
-    """What a column is of; nothing where that hangs on a quantity, or its zero is not that of SI."""
+    """What a column is of; nothing where that hangs on a quantity."""
     try:
-        return None if parse_open(column.unit).zero else dict(dimension_of_unit(column.unit))
-    except (DimensionMismatch, UnitError):
+        return dict(dimension_of_unit(column.unit))
+    except DimensionMismatch:
         return None
 
 
