@@ -16,7 +16,7 @@ from loopsheet.report.files.form import Form, schema
 from loopsheet.report.files.manifest import Manifest
 from loopsheet.report.files.values import Result
 from loopsheet.report.inputs import about, keys
-from loopsheet.report.messages.errors import CATALOGUE, GROUPS
+from loopsheet.report.messages.catalogue import CATALOGUE, GROUPS
 from loopsheet.report.method import Method
 from loopsheet.report.method_lines import FUNCTIONS
 from loopsheet.report.verbs import VERBS

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike, NDArray
 
-from .cells.address import index_text
+from .cells.address import index_text, parts
 from .cells.values import CODES
 from .column import Column
 from .inputs.folders import report_folder
-from .messages.errors import LoopsheetError, suggest
+from .messages.errors import LoopsheetError, listing, suggest
 from .quantity import behind
 from .result.findings import checks
 from .study import Study
@@ -45,11 +45,14 @@ class Estimates(NDArrayOperatorsMixin):
     index : tuple of str
         What the rows are called: ``2``, ``1-2``; empty for a scalar.
     names : tuple of str
-        The same with the names that rows have in the table of measurements, ``2 (S-17)``.
+        The same with the names that rows have in the table of measurements, ``2 (S-17)``; the words of
+        groups.
     status : tuple of str
         ``ok``, or the code of a cell without a value: ``#NOROOT!``.
     texts, sure : tuple of str
         As the report shows the cells and their uncertainties, with units; empty where there is none.
+    addresses, words : tuple of str
+        Of the cells; and by which word a row is known, if it is.
     """
 
     name: str
@@ -62,6 +65,8 @@ class Estimates(NDArrayOperatorsMixin):
     status: tuple[str, ...]
     texts: tuple[str, ...] = field(repr=False)
     sure: tuple[str, ...] = field(repr=False)
+    addresses: tuple[str, ...] = field(repr=False)
+    words: tuple[str, ...] = field(repr=False)
 
     def __float__(self) -> float:
         """The value of a scalar."""
@@ -89,8 +94,31 @@ class Estimates(NDArrayOperatorsMixin):
         return iter(self.value.tolist())
 
     def __getitem__(self, rows: Any) -> Any:
-        """The values of rows, which are counted from 0 as in an array of NumPy."""
-        return self.value[rows]
+        """The values of rows, which are counted from 0 as in an array of NumPy; of a text :meth:`of` that."""
+        return self.of(rows) if isinstance(rows, str) else self.value[rows]
+
+    def of(self, row: str) -> Estimates:
+        """The estimate of a row, by its number or its word; several may have one word.
+
+        Raises
+        ------
+        KeyError
+            There is no such row.
+        """
+        places = [n for n, own in enumerate(zip(self.index, self.words, strict=True)) if row in own]
+        if not places:
+            known = listing([*self.index, *filter(None, dict.fromkeys(self.words))])
+            raise KeyError(f"{self.name} has no row '{row}': {known or 'it is a single number'}")
+
+        def cut(every: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(every[n] for n in places)
+
+        at = places if len(places) > 1 else places[0]
+        texts = cut(self.index), cut(self.names), cut(self.status), cut(self.texts), cut(self.sure)
+        value, u = (np.asarray(each[at]) for each in (self.value, self.u))
+        return Estimates(
+            self.name, self.meaning, self.unit, value, u, *texts, cut(self.addresses), cut(self.words)
+        )
 
     def __format__(self, how: str) -> str:
         """The value of a scalar with a format, ``{x:.2f}``; without one what it is."""
@@ -99,8 +127,7 @@ class Estimates(NDArrayOperatorsMixin):
     @property
     def rows(self) -> tuple[tuple[str, str, str], ...]:
         """Address, cell and uncertainty as texts, row by row."""
-        at = [f"{self.name}[{index}]" for index in self.index] or [self.name]
-        return tuple(zip(at, self.texts, self.sure, strict=True))
+        return tuple(zip(self.addresses, self.texts, self.sure, strict=True))
 
     def _repr_html_(self) -> str:
         """For a notebook: a table of its cells."""
@@ -131,7 +158,7 @@ class Loaded(Mapping[str, Estimates]):
         return tuple(f"{each.word}: {each.sentence}" for each in checks(self._study.proved) if each.word)
 
     def __getitem__(self, name: str) -> Estimates:
-        """A column.
+        """A column, or a cell of it by its address, ``alpha[1-2]``.
 
         Raises
         ------
@@ -139,6 +166,9 @@ class Loaded(Mapping[str, Estimates]):
             With the nearest name and all there are.
         """
         report = self._report
+        own, row = parts(name) or (name, "")
+        if row and own in report.sheet:
+            return self[own].of(row)
         if name not in report.sheet:
             instead = suggest(name, self)
             raise KeyError(f"no quantity '{name}': {instead and instead + ' '}there are {', '.join(self)}")
@@ -159,13 +189,15 @@ class Loaded(Mapping[str, Estimates]):
             tuple(CODES[status] for status in report.values.status[name].tolist()),
             tuple(map(report.text, cells)),
             tuple(report.sure(name, each).text + behind(how.unit) if each > 0 else "" for each in u.tolist()),
+            tuple(cell.address for cell in cells),
+            tuple(report.words(column).get(cell.label, "") for cell in cells) if shape else (),
         )
 
     def _called(self, column: Column, index: tuple[int, ...]) -> str:
-        """A row by its number, with its name if it is one of the table of measurements."""
+        """A row by its number, with its name if it is one of the table of measurements; or a group's word."""
         axis = column.axis
         if axis is None or not axis.is_given:
-            return index_text(index)
+            return self._report.words(column).get(index) or index_text(index)
         return self._report.inputs.on(axis.name).called(index[0])
 
     def __iter__(self) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import grouped
 import numpy as np
 import pytest
 
@@ -31,3 +32,30 @@ def test_columns_behave_as_arrays_do() -> None:
         len(mean)
     with pytest.raises(ValueError, match="ambiguous"):
         bool(each)
+
+
+def test_a_row_has_its_number() -> None:
+    report = loopsheet.load("paper")
+    pair = report["alpha[1-2]"]
+    assert (pair.index, pair.value.shape, pair.rows[0][0]) == (("1-2",), (), "alpha[1-2]")
+    assert (float(pair), float(pair.u)) == (report["alpha"].value[0], report["alpha"].u[0])
+    with pytest.raises(KeyError, match="alpha has no row '2-1': 1-2, 1-3, "):
+        report["alpha"]["2-1"]
+    with pytest.raises(KeyError, match="alpha_mean has no row '1': it is a single number"):
+        report["alpha_mean[1]"]
+    with pytest.raises(KeyError, match="no quantity 'alfa"):
+        report["alfa[1-2]"]
+
+
+def test_a_group_has_its_word(tmp_path: Path) -> None:
+    report = loopsheet.load(grouped.write(tmp_path))
+    word = report["level"].names[1]
+    assert not word.isdigit()
+    assert [at for at, _, _ in report["level"].rows] == [f"level[{each}]" for each in report["level"].names]
+    assert float(report[f"level[{word}]"]) == float(report["level"]["2"]) == report["level"].value[1]
+    own = report["y"][word]  # of all rows of the group
+    assert own.value.tolist() == [
+        y for y, each in zip(report["y"], report["y"].words, strict=True) if each == word
+    ]
+    with pytest.raises(KeyError, match=f"1, 2, 3, .*{word}"):
+        report["level"]["of nobody"]
