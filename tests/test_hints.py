@@ -22,6 +22,7 @@ class Lab(Method, rows="readings", headline="m"):
 """
 TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
 FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
+NOTED = "reading,x [mm],y [N],note\n1,1,00,2.0,\n2,1.10,2.2,\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
 WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
@@ -58,6 +59,8 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("measurements.csv", "x [mm]", "gap [mm]", "1:9", "'x' is missing: did you mean that?"),
         ("measurements.csv", "reading,", "excluded,", "1:1", "a column 'left out' of the table"),
         ("report.toml", "", "[excluded]\n", "6:2", "a column 'left out' of the table"),
+        ("measurements.csv", TABLE, NOTED, "2:12", "a comma separates fields: write 2.334"),
+        ("measurements.csv", "2.0", "2.0,", "2:12", "a separator too many stands at the end"),
         ("measurements.csv", "1.10", "-", "3:3", "the cell of what was not measured is empty"),
         ("measurements.csv", "3,1.30", "2,1.30", "4:1", "reading 2 is there twice, first in line 3"),
         ("measurements.csv", TABLE, FULLER, "1:22", "allowed: reading, x, y, u(x), u(y) or left out"),

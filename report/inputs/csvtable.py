@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from itertools import compress
+from itertools import compress, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..messages.errors import close, listing, suggest
@@ -177,7 +177,9 @@ def _report_widths(
             at = source.at(source.line_end(row.fields[-1].offset))
         comma = len(row.fields) > wanted and separator == ","
         more = "a comma separates fields: write 2.334, not 2,334" if comma else ""
-        if not any(field.text for field in row.fields[wanted:]) and len(row.fields) > wanted:
+        halves = (all(each.text.isdigit() for each in both) for both in pairwise(row.fields[1:]))
+        empty = len(row.fields) > wanted and not any(field.text for field in row.fields[wanted:])
+        if empty and not (comma and any(halves)):
             more = "a separator too many stands at the end of the row"
         findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
 
