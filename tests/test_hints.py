@@ -22,7 +22,7 @@ class Lab(Method, rows="readings", headline="m"):
 """
 TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
 FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
-NOTED = "reading,x [mm],y [N],note\n1,1,00,2.0,\n2,1.10,2.2,\n"
+NOTED = "reading,x [mm],y [N],remark\n1,1,00,2.0,\n2,1.10,2.2,\n3,1.30,2.7,\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
 WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')

@@ -49,6 +49,15 @@ def test_they_come_along(tmp_path: Path) -> None:
     assert not any(isinstance(cell, Item) for row in values.rows for cell in row.cells[:3])
 
 
+def test_one_that_nobody_has_filled_in_comes_along(tmp_path: Path) -> None:
+    empty = TABLE.replace('"door open, 5 %"', "")
+    report = Study(gas.folder(tmp_path, table=empty)).computed
+    assert report.inputs.only.remarks == ("operator", "remark")
+    numbers = empty.replace("20.0,,", "20.0,5,")
+    with pytest.raises(InputError, match="unknown column 'remark'"):
+        assert Study(gas.folder(tmp_path, table=numbers)).inputs
+
+
 def test_rows_may_be_called_as_the_column_of_their_names(tmp_path: Path) -> None:
     """A column `reading` holds the numbers of readings, or their names; not some of each."""
     table = TABLE.replace("reading,operator", "reading,by").replace("1,A", "R-1,A").replace("2,B", "R-2,B")

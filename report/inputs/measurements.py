@@ -310,8 +310,8 @@ class _Reading:
             if _EXCLUDING.fullmatch(name):
                 continue  # whoever wrote it thinks that its rows take no part
             texts = [row.fields[place].text for row in self.table.rows]
-            # Of a table without rows nobody knows; what it lacks is said of it.
-            if not texts or any(text and not is_number(text) for text in texts):
+            # Of a column without any word, or a table without rows, nobody knows: it may get some.
+            if not any(texts) or any(text and not is_number(text) for text in texts):
                 yield name
 
     def fields(self, name: str) -> list[Field]:
