@@ -10,7 +10,7 @@ import shlex
 import signal
 import sys
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext, redirect_stdout, suppress
+from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .messages.errors import LoopsheetError, UsageError
     from .result.findings import Check
 
-__all__ = ["command", "main"]
+__all__ = ["main"]
 
 _DESCRIPTION = (
     "Reports whose every number is traced to an equation, recomputed and compared with its publication."
@@ -155,17 +155,6 @@ def _in_order(options: argparse.Namespace) -> None:
     reason = f"'{word}' is a folder: what is asked of it stands before it"
     hint = f"'loopsheet {options.verb} {asked} {written(report_folder(word))}'"
     raise UsageError(diagnose("LS617", reason=reason, known="", suggestion=hint))
-
-
-def command() -> NoReturn:
-    """The program: one command, and the end of the process."""
-    code = main()
-    if code > 128:
-        # Somebody stopped it, in the middle of an import perhaps: Python's own way out may crash there.
-        with suppress(OSError):
-            sys.stdout.flush()
-        os._exit(code)
-    raise SystemExit(code)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

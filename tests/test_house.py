@@ -434,7 +434,7 @@ def test_every_package_is_listed() -> None:
 
 def test_command_is_registered() -> None:
     (command,) = metadata.entry_points(group="console_scripts", name="loopsheet")
-    assert command.value == "loopsheet.report.cli:command"
+    assert command.value == "loopsheet.__main__:command"
 
 
 def test_pytest_plugin_is_registered() -> None:

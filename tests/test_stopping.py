@@ -563,3 +563,25 @@ def test_an_import_that_is_ended_while_the_command_line_is_read_is_no_fault_of_o
     finally:
         signal.signal(signal.SIGINT, before)
     assert capsys.readouterr().err == "\nstopped; nothing was half-written\n"
+
+
+STOPPED_IMPORT = """
+import os, signal, sys
+
+class Stopping:
+    def find_spec(self, name, *_):
+        if name == "loopsheet.report.cli":
+            os.kill(os.getpid(), signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored
+sys.meta_path.insert(0, Stopping())
+from loopsheet.__main__ import command
+command()
+"""
+
+
+def test_ctrl_c_while_it_imports_ends_it_without_a_word() -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", STOPPED_IMPORT], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (-signal.SIGINT, "", "")
