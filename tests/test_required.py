@@ -7,6 +7,8 @@ import pytest
 from loopsheet import Method, given, load, required
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.result.conformity import decision
+from loopsheet.report.study import Study
 
 CODE = """\
 from loopsheet import Method, given, let, measured, required
@@ -53,6 +55,16 @@ def test_a_margin_is_computed_and_decided_on(tmp_path: Path, capsys: pytest.Capt
     capsys.readouterr()
     assert main(["budget", "elastic[2]", str(tmp_path)]) == 0
     assert "limits at least 0 MPa, no guard band\nelastic[2] conforms" in capsys.readouterr().out
+
+
+def test_the_report_says_of_what_a_margin_is(tmp_path: Path) -> None:
+    report = Study(folder(tmp_path, "500")).computed
+    said = [decision(report, each) for each in report.uncertain().conformities]
+    assert [each.partition(" conforms: ")[0] for each in said] == [
+        "Room, margin 5.000 mm: thin",
+        "No yield, margin 250.0 MPa: elastic[1]",
+        "No yield, margin 100.0 MPa: elastic[2]",
+    ]
 
 
 def test_what_is_not_met_is_a_finding(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

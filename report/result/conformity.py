@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ..quantity import behind, span
+from ..workbook import sentence_case
 from .numbers import chance
 from .uncertain import Conformity, Decision
 
@@ -38,9 +39,13 @@ def lines(report: Report, found: Conformity) -> Iterator[str]:
 
 
 def decision(report: Report, found: Conformity) -> str:
-    """All of that in one sentence, the decision first."""
-    limits = f"{found.limits}{_rule(report, found)}"
-    return f"{sentence(found)} ({'; '.join((limits, *probabilities(found)))})."
+    """All of that in one sentence, the decision first; before it what a margin is of, and how large it is."""
+    limits, name = f"{found.limits}{_rule(report, found)}", found.budget.name
+    told = f"{sentence(found)} ({'; '.join((limits, *probabilities(found)))})."
+    if name not in report.workbook.margins:
+        return told
+    cell = report.values.cell(name, found.budget.label)
+    return f"{sentence_case(report.sheet[name].meaning)} {report.text(cell)}: {told}"
 
 
 def probabilities(found: Conformity) -> Iterator[str]:
