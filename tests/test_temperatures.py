@@ -333,6 +333,6 @@ def test_what_is_left_over_of_a_fit_has_no_zero(tmp_path: Path, u: str) -> None:
     units = {name: shown.unit for name, shown in report.shown.items() if shown.unit.endswith("degC")}
     differences = ("line_residual", "s_a", "line_s" if u == "None" else "u_T")
     assert units == {
-        **dict.fromkeys(("T", "T_ref", "a", "line_fitted"), "degC"),
+        **dict.fromkeys(("T", "T_ref", "m", "a", "line_fitted"), "degC"),
         **dict.fromkeys(differences, "delta_degC"),
     }
