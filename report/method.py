@@ -302,6 +302,9 @@ def root(
     steps : int
         How many of Newton's steps are tried before it is bisected.
     """
+    for end in (low, high, start):
+        if isinstance(end, str):
+            raise _no_end(end)
     low, high = exact(low), exact(high)
     if low.is_number and high.is_number and low >= high:
         raise SheetError(f"the root is sought between {low} and {high}: low is not below high")
@@ -556,9 +559,13 @@ def claim(
     method_algebra.claimed(current(), exact(left), exact(right), meaning, because, from_, label)
 
 
+def _no_end(said: Any) -> SheetError:
+    return SheetError(f"low and high are numbers, in the unit that is declared, not {said!r}")
+
+
 def _bounds(low: float | None, high: float | None, positive: bool, whole: bool = False) -> Bounds:
     for end in (low, high):
         if end is not None and not isinstance(end, int | float):
-            raise SheetError(f"low and high are numbers, in the unit that is declared, not {end!r}")
+            raise _no_end(end)
     above = positive and (low is None or low <= 0)
     return Bounds(0 if above else low, high, low_open=above, integer=whole)

@@ -96,7 +96,7 @@ class WatchedBody(MethodBody):
             return self.failed(NameError(f"name {name!r} is not defined{hint}", name=name), around.f_lineno)
 
     def __setitem__(self, name: str, value: Any) -> None:
-        is_new = name not in self
+        is_new = name not in self or name in self.announced.keys() - self.columns.keys()
         if isinstance(value, TakenLine) and any(_failed_in(value.parts(self))):
             self.unnamed = [said for said in self.unnamed if said is not value]
             dict.__setitem__(self, name, _Failed("_"))

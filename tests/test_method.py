@@ -156,6 +156,10 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ),
         ('c = given("m", "x", low="3")', "low and high are numbers, in the unit that is declared, not '3'"),
         ('c = let("2 * a", "x")', "'2 * a' is a text: a formula stands there without quotes"),
+        (
+            'q = unknown(); q = root(q, a, "x", "m", low="0.1 mm", high=1)',
+            "low and high are numbers, in the unit that is declared, not '0.1 mm'",
+        ),
         ('let(2 * a, "no name")', "'no name' has no name: a line is a name, =, and what is declared"),
         ('c = [let(2 * a, "in a list")]', "'in a list' has no name"),
         ('claim(a > 0, 1, "positive")', "a > 0 is no formula of real numbers; what is claimed is that two"),

@@ -113,6 +113,15 @@ b = let(a[1], "of it")
 """,
         {0: "must be a pure number"},
     ),
+    "what a root that is refused would have found": (
+        """\
+q = unknown("length", "mm")
+q = root(q**2, x**2, "length", low=1, high=9)
+r = let(q / x, "share", "%")
+plot(x, q)
+""",
+        {1: "is enough: root(...) says what q is"},
+    ),
     "what follows from a fit, a unit and a module that are not there": (
         """\
 a = unknown("where it begins", "N")
