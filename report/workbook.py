@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from functools import cache
@@ -147,12 +148,14 @@ def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
 
 
 def sentence_case(said: str) -> str:
-    """A caption with a capital at its beginning; all others stay.
+    """What is said with a capital at its beginning, if that is a plain word: a symbol and ``pH`` stay.
 
     >>> sentence_case("force by Johnson")
     'Force by Johnson'
+    >>> sentence_case("pH by an electrode")
+    'pH by an electrode'
     """
-    return said[:1].upper() + said[1:]
+    return said[0].upper() + said[1:] if re.match(r"[a-z]{2,}\b|a(?= )", said) else said
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,21 @@ def test_what_is_plotted() -> None:
     assert (chart.log, Cooling.workbook.figures[0].caption) == ("x", f"Cold.{left_out}")
 
 
+def test_a_caption_leaves_a_symbol_as_it_is() -> None:
+    class Acid(Method):
+        """An acid."""
+
+        c = measured("mol/L", "concentration")
+        pH = measured("1", "pH by an electrode")
+        plot(c, pH)
+        plot(pH, c)
+        twice = let(2 * pH, "twice")
+
+    assert [each.caption for each in Acid.workbook.figures] == [
+        "pH by an electrode over concentration.", "Concentration over pH by an electrode.",
+    ]  # fmt: skip
+
+
 def test_of_what_is_positive_nothing_is_left_out() -> None:
     class Law(Method):
         """A power law."""

@@ -12,6 +12,7 @@ from functools import cached_property
 
 from ...derivations.vocabulary import Vocabulary
 from ..result.numbers import read
+from ..workbook import sentence_case
 from .names import name_latex
 from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
@@ -60,8 +61,8 @@ class Sentences:
     def sentence(self, text: str) -> Inlines:
         """A sentence with a capital letter in front and without its full stop."""
         text = text.rstrip(".")
-        word = re.match(r"[a-z]{2,}\b|a(?= )", text)
-        return self.rich(text[0].upper() + text[1:] if word and word.group() not in self.vocabulary else text)
+        word = re.match(r"\w+", text)
+        return self.rich(text if word and word.group() in self.vocabulary else sentence_case(text))
 
     def units(self, text: str) -> Inlines:
         """Words of a user, with the units in them as tables print them."""
