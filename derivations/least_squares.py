@@ -423,8 +423,8 @@ class LeastSquares:
         said = self._said(self.number, members, word, Kind.DEFINITION, because, part=part, defines=slope)
         step = parameter + part_of_step * self.unknowns[m]
         self._found[str(parameter)] = FitQuantity(str(parameter), word, "", parameter, said, step=step)
-        title = f"slope of the sum of squares by {parameter}"
-        claim = self._said(next(self.own), (diff(self._squares, parameter), -2 * slope), title)
+        title, shown = f"slope of the sum of squares by {parameter}", "the derivative of the sum of squares"
+        claim = self._said(next(self.own), (diff(self._squares, parameter), -2 * slope), title, because=shown)
         rows = (self.columns[0][m], self.residual, self.fitted, *(self.weight,) * bool(self.feet))
         own = (*self._definitions(*rows), *self._nearest)
         step_of = _step(claim, ((said, slope), *own), "Differentiate the sum of squares.")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from test_fit import cells, write
 
+from loopsheet.derivations.equation import Kind
 from loopsheet.report.study import Study
 
 PLACES = (
@@ -63,6 +64,13 @@ class Rates(Method, rows="readings"):
     line = fit(v, V_max * S / (K_M + S))
 """
 RATED = "0.10,0.45\n0.25,0.93\n0.50,\n1.00,2.25\n2.00,2.88\n4.00,3.35\n"
+
+
+def test_a_claim_of_a_fit_is_called_no_definition(tmp_path: Path) -> None:
+    report = in_folder(tmp_path, POWER, "1,1,1.0\n2,2,2.8\n3,3,5.2\n4,4,8.1\n")
+    claims = [each for each in report.ledger.equations() if each.kind is Kind.CLAIM]
+    assert "the derivative of the sum of squares" in {each.because for each in claims}
+    assert not [each.number for each in claims if each.because.startswith("definition")]
 
 
 def test_the_referee_steps_without_a_row_that_is_empty(tmp_path: Path) -> None:
