@@ -393,6 +393,21 @@ def test_findings_in_report_toml(
 
 
 @pytest.mark.parametrize(
+    ("new", "said"),
+    [
+        ('"8.366 g', "close the text with a second quotation mark"),
+        ("8.3 .. 8.4 g", 'put quotes around a number with its unit, "12.7 mm"'),
+        ("5 %", 'put quotes around a number with its unit, "12.7 mm"'),
+        ('"8.366" g', ""),
+    ],
+)
+def test_what_quotes_may_be_missing_is_proposed(new: str, said: str, read: Reader) -> None:
+    with pytest.raises(InputError) as told:
+        read(TOML.replace('"8.366 g"', new, 1))
+    assert [each.hint for each in told.value.diagnostics] == [said]
+
+
+@pytest.mark.parametrize(
     ("csv", "expected"),
     [
         ("test,v [m/s],e [1],x_p [um]\n", ["LS310 measurements.csv:1:28+1"]),

@@ -434,7 +434,7 @@ class _Reader:
             self.findings.add("LS216", at, text=name, known=first)
             return None
         source = self.source(
-            name, LARGEST_TABLE, f"a first line with names and units, then one row a {of.row}", at
+            name, LARGEST_TABLE, f"a first line with names and units, then a row for each {of.row}", at
         )
         if source is None:
             return None
@@ -507,7 +507,7 @@ class _Reader:
     def draws(self, name: str, of: Declared, at: Location) -> tuple[float, ...] | None:
         """Read draws that somebody else made of a parameter."""
         source = self.source(
-            name, LARGEST_TABLE, "a first line with names and units, then one row a draw", at
+            name, LARGEST_TABLE, "a first line with names and units, then a row for each draw", at
         )
         return read_draws(source, of, self.findings) if source else None
 

@@ -116,8 +116,10 @@ def _advice(at: Location) -> str:
         return "close the name of the table: " + re.split(r"\s|#", line)[0] + "]"
     if re.match(r"[A-Za-z_]\w*\s*=\s*[^\s\"'\[{\dtfin+-]", line):
         return "put quotes around text"
-    if re.match(r"[A-Za-z_]\w*\s*=\s*[\d.,+-]+\s*[A-Za-zµμ]", line):
+    if re.match(r"[A-Za-z_]\w*\s*=\s*[\d.,+\s-]+[A-Za-zµμ%]", line):
         return 'put quotes around a number with its unit, "12.7 mm"'
+    if line.count('"') % 2:
+        return "close the text with a second quotation mark"
     return ""
 
 
