@@ -19,6 +19,7 @@ from loopsheet.report.prepared import Prepared
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import Budget, Distributed
 from loopsheet.report.sheet import Sheet
+from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import html, latex
 from loopsheet.report.views.budget import FORMATS
@@ -97,6 +98,17 @@ def test_the_report_draws_the_shares_of_the_first_result(report: Report) -> None
     article = re.findall(r"\\rule\{([\d.]+)mm\}\{1.2ex\}\} (\d+)", latex.render(report, []))
     assert [(float(length), int(percent)) for length, percent in article] == [(n / 4, n) for n in percents]
     assert [Bar(share).percent for share in (-0.1, 0.004, 0.555, 1.2)] == [0, 0, 56, 100]
+
+
+@pytest.mark.parametrize(
+    ("v", "said"), [("exact", "The only source."), ("u = 1e-9 m/s", "The largest of 4 sources.")]
+)
+def test_one_source_is_told_as_one(tmp_path: Path, v: str, said: str) -> None:
+    toml = FILES["report.toml"].replace('v = "exact"', f'v = "{v}"').replace("u = 0.1 um, dof = 4", "exact")
+    for name, text in {**FILES, "report.toml": toml}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (table,) = Tables(Material(Study(tmp_path).computed)).budget()
+    assert table.legend[0].startswith(said)  # type: ignore[union-attr]
 
 
 def test_a_given_number(campaign: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -283,7 +283,8 @@ class Tables:
             _Made("share of the variance", self._share, "words"),
         )
         caption = Strong(("Where that comes from:",)), " ", Code(budget.cell)
-        legend = f"The largest {len(seen)} of {len(budget.contributions)} sources."
+        shown, many = f"{len(seen)} " * (len(seen) > 1), len(budget.contributions)
+        legend = f"The largest {shown}of {many} sources." if many > 1 else "The only source."
         legend += f" {sentence_case(most[0])} matters most: {_percent(most[1])}." if most else ""
         return (_table("budget", caption, made, [((), seen)], look="list", legend=(legend,)),)
 
