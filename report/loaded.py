@@ -208,7 +208,7 @@ class Loaded(Mapping[str, Estimates]):
 
     def __repr__(self) -> str:
         told = ", ".join(text for name in self.headline for _, text, _ in self[name].rows)
-        return f"<report '{self.title}': {told}>"
+        return f"<report '{self.title}'{': ' * bool(told)}{told}>"
 
     def _repr_html_(self) -> str:
         """For a notebook: title, results, and what there is to tell."""

@@ -8,6 +8,7 @@ import pytest
 
 import loopsheet
 from loopsheet import LoopsheetError, load
+from loopsheet.report.inputs.folders import PAPER
 
 pytestmark = pytest.mark.usefixtures("unrefereed")
 
@@ -17,6 +18,11 @@ def test_what_is_wrong_with_a_folder_stands_below_two_frames(tmp_path: Path) -> 
     with pytest.raises(LoopsheetError) as told:
         load(tmp_path)
     assert len(told.traceback) == 2
+
+
+def test_a_report_is_shown_by_its_results_if_it_has_any() -> None:
+    assert repr(load("paper")).startswith("<report 'Soft steel, ball drop': 1.3013, ")
+    assert repr(load(PAPER.parent / "kepler")) == "<report 'Kepler's equation'>"
 
 
 def test_columns_behave_as_arrays_do() -> None:
