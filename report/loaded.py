@@ -176,13 +176,14 @@ class Loaded(Mapping[str, Estimates]):
         cells = list(report.values.cells(name))
         shape = () if column.axis is None else (len(cells),)
         printed = [float(each.number) if each else np.nan for each in report.inputs.printed(name)]
+        values = printed or [float(how.digits_of(each)) for each in report.values.value[name]]
         known = report.uncertain().u.get(name)
         u = np.full(len(cells), np.nan) if known is None else known
         return Estimates(
             name,
             column.meaning,
             how.unit,
-            np.array(printed or how.of(report.values.value[name])).reshape(shape),
+            np.array(values).reshape(shape),
             (u / how.scale).reshape(shape),
             tuple(index_text(cell.label) for cell in cells) if shape else (),
             tuple(self._called(column, cell.label) for cell in cells) if shape else (),

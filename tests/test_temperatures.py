@@ -40,10 +40,13 @@ def test_every_engine_and_view_agrees(tmp_path: Path, capsys: pytest.CaptureFixt
     assert sum(each["kind"] == "engine" for each in checks) == 3
     assert sum(each["kind"] == "published" for each in checks) == 7
     assert main(["why", "warm[3]", str(tmp_path)]) == 0
-    assert "in SI     warm[3] = 1.5 + 269.95" in capsys.readouterr().out
+    seen = capsys.readouterr().out
+    assert "in SI     warm[3] = 1.5 + 269.95" in seen
+    assert "warm[3] = -1.7 degC " in seen  # and no rounding of 271.45 - 273.15
     assert main(["show", "warm", str(tmp_path)]) == 0
     digits = re.findall(r"warm\[\d\] +(\S+)", capsys.readouterr().out)
-    assert digits == ["21.5", "23.0", "-1.7"]  # and no rounding of 271.45 - 273.15
+    assert digits == ["21.5", "23.0", "-1.7"]
+    assert loopsheet.load(tmp_path)["warm"].value.tolist() == [21.5, 23.0, -1.7]
     assert main(["budget", "m", str(tmp_path), "--draws", "4000"]) == 0
     told = capsys.readouterr().out
     assert "m = 12.767 degC, u = 0.058 degC" in told

@@ -34,7 +34,7 @@ def sentence(report: Report, budget: Budget) -> str:
         why = f": {budget.unlooked}; use '{draws_of(budget.cell)}'" if budget.unlooked else ""
         return f"{budget.cell} = {told}, and its uncertainty is not known{why}"
     if not budget.u:
-        return f"{budget.cell} = {report.shown[budget.name].of(budget.value)!r}{unit}, exactly"
+        return f"{budget.cell} = {report.shown[budget.name].digits_of(budget.value)}{unit}, exactly"
     value, u = report.stated(budget.name, budget.value, budget.u)
     told = f"{budget.cell} = {value.text}{unit}, u = {u.text}{unit}"
     if math.isnan(budget.factor):

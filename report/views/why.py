@@ -87,7 +87,7 @@ def _full(report: Report, cell: Cell) -> str:
     """All digits, in the unit of the report."""
     if cell.value is None:
         return cell.status.code
-    return f"{report.shown[cell.name].of(cell.value)!r}{_unit(report, cell.name)}"
+    return report.shown[cell.name].digits_of(cell.value) + _unit(report, cell.name)
 
 
 def _sure(report: Report, name: str, row: int) -> str:
