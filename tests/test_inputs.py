@@ -531,6 +531,11 @@ def test_with_an_unknown_workbook_the_rest_is_still_looked_at(findings: Findings
     ]
 
 
+def test_with_an_unknown_workbook_nothing_is_said_of_its_cells(findings: Findings) -> None:
+    toml = WITH_PUBLISHED.replace("soft_impact", "soft") + '[published.errata]\n"v[1]" = "2"\n'
+    assert findings(toml, CSV, PUBLISHED) == ["LS207 report.toml:2:12+6"]
+
+
 def test_a_word_of_a_table_that_cannot_be_read_is_no_mistake(findings: Findings) -> None:
     """Whether there is such a row is asked once the table can be read; what looks like a date is told now."""
     csv = "test,lot,v [m/s]\n1,A-1\n"

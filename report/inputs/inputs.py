@@ -286,7 +286,7 @@ class _Reader:
         expected = read_expected(self.tables)
         limits = read_limits(self.tables, self.workbook.margins if self.workbook else {})
         cards = read_cards(self.tables)
-        errata = self.errata(measurements) if measurements is not None else {}
+        errata = self.errata(measurements) if self.workbook and measurements is not None else {}
         if not computable:
             self.findings.check()
         if self.workbook is None or measurements is None:
