@@ -164,7 +164,7 @@ def test_known_misprints(small: Report) -> None:
         small, errata=changes, amended=replace(out, verdict=UNREACHABLE), misprints=(MISPRINT,)
     )[3:]
     assert not check.passed
-    assert "a mismatch of 0.7 half units of the last digit; perhaps theta is printed -0.1" in check.message
+    assert "0.7 half units of the last digit; with that, perhaps theta is printed -0.1" in check.message
     (check,) = refereed(small, errata=changes, amended=out, joint=out)[3:]
     assert (check.name, check.passed) == ("known misprints", False)
     assert check.message == "all values come out as it is; drop the known misprints"

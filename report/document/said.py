@@ -309,10 +309,7 @@ class Said:
 
     def amended(self) -> Inlines:
         """What comes out with the known misprints put right: what they are, then what comes out."""
-        if self.referee.amended is None:
-            return ()
-        sentences = (words.amended(self.referee), *map(words.explained, self.referee.misprints))
-        return joined(map(self.told, sentences), " ")
+        return joined(map(self.told, words.amending(self.referee)), " ")
 
     def fits(self) -> dict[str, str]:
         """What is said of the published value of each average and fit, by its cell."""

@@ -40,7 +40,7 @@ __all__ = [
     "POSSIBLE",
     "address",
     "all_together",
-    "amended",
+    "amending",
     "at_least",
     "because",
     "bounds",
@@ -412,7 +412,7 @@ def because(label: Relabelled) -> str:
     return f"{kind}; the worst mismatch is {_half_units(label.mismatch)}{others}"
 
 
-def amended(found: Referee) -> str:
+def _amended(found: Referee) -> str:
     """What comes out with the known misprints put right; empty if none are known."""
     if found.amended is None:
         return ""
@@ -422,6 +422,14 @@ def amended(found: Referee) -> str:
         for each in found.errata
     )
     return f"with {right}, {together(found.amended)}"
+
+
+def amending(found: Referee) -> tuple[str, ...]:
+    """The same, and what would explain that even so not all comes out."""
+    if found.amended is None or found.amended.possible:
+        return tuple(filter(None, (_amended(found),)))
+    first, *others = perhaps(found.misprints)
+    return _amended(found), f"with that, {first}", *others
 
 
 def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
@@ -441,10 +449,8 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         yield f"  label    {relabelled(label)}"
     for each in found.fits:
         yield f"  fit      {fit(each, meaning)}"
-    if found.amended is not None:
-        yield f"  amended  {amended(found)}"
-        for said in () if found.amended.possible else perhaps(found.misprints):
-            yield f"  {said}"
+    for n, said in enumerate(amending(found)):
+        yield f"  {said if n else f'amended  {said}'}"
 
 
 # --- which average was published -------------------------------------------------------------------------
