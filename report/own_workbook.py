@@ -150,7 +150,7 @@ class _Own:
             if traceback.tb_frame.f_code.co_filename == str(self.path):
                 line = traceback.tb_lineno
             traceback = traceback.tb_next
-        found = self.finding(line, reason, _HINT if error is None else _hint(error))
+        found = self.finding(line, reason, _HINT if error is None else self.hint(error, line))
         if isinstance(error, SheetError) and str(found.at.source).lstrip().startswith("class "):
             at = place_of_column(self.path, self.code, error.about)  # told at the end of its body
             found = replace(found, at=at) if at.line else found
@@ -163,10 +163,20 @@ class _Own:
         body = CURRENT.get()
         CURRENT.set(None)
         for line, each in body.wrong.items() if body else ():
-            yield self.finding(line, _said(each), _hint(each))
+            yield self.finding(line, _said(each), self.hint(each, line))
         named = set(re.findall(r"\w+", str(found.at.source)))
         if body is None or (error not in body.wrong.values() and named.isdisjoint(body.without)):
             yield found
+
+    def hint(self, error: BaseException, line: int | None) -> str:
+        """What helps who wrote a line that fails; of a name also where it is declared, if that is below."""
+        if not isinstance(error, NameError) or not line:
+            return _hint(error)
+        below = enumerate(self.code.decode(errors="replace").splitlines()[line:], start=line + 1)
+        computed = re.compile(rf"\s+{re.escape(error.name or '')}\s*=\s*(let|given|measured|constant)\(")
+        later = next((n for n, text in below if computed.match(text)), 0)
+        there = f"{error.name} is declared below, in line {later}: move this line behind it"
+        return there if later else _hint(error)
 
     def finding(self, line: int | None, reason: str, hint: str) -> Diagnostic:
         """A finding at a line of the file."""

@@ -49,6 +49,7 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("workbook.py", 'rows="readings"', 'row="reading"', "4:1", 'rows="readings"'),
         ("workbook.py", "K * x", 'given("N", "F") * x', "10:5", "what is declared has a line of its own"),
         ("workbook.py", "K * x", "K (x)", "10:5", "is there a * missing"),
+        ("workbook.py", "K * x", "K * x + m", "10:5", "m is declared below, in line 11: move this line"),
         ("workbook.py", "    z", "    K * x\n    let(y, 'force')\n    z", "11:5", "'force' has no name"),
         ("workbook.py", "K * x", "1 + K * x", "10:5", "a number has no unit; what is declared has"),
         ("workbook.py", "let(K * x - y,", "let(__import__('sympy').log(x),", "10:5", "log(c / c_0)"),
