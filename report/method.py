@@ -311,7 +311,7 @@ def root(
     ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
     first, last = (f"{float(end):.15g}" if end.is_number else str(end) for end in (low, high))
     between = f"{first} and {last}" + behind(unit)
-    none = f"no value between {between}, which do not count, satisfies the equation"
+    none = f"no value between {between}, these ends left out, satisfies the equation"
     # Ends that hang on the row may change places.
     upright = low < high
     requires = (

@@ -586,7 +586,7 @@ def test_sums_of_one_result_run_over_the_same_rows(
 @pytest.mark.parametrize(
     ("equation", "low", "code", "says"),
     [
-        ("x**2, a", "1", "#NOROOT!", "no value between 1 and 4, which do not count, satisfies the equation"),
+        ("x**2, a", "1", "#NOROOT!", "no value between 1 and 4, these ends left out, satisfies the equation"),
         ("x**3 - 6*x**2 + 11*x, 6*a", "1", "#UNDECIDED!", "near x = 1 to "),
         ("x**2, a", "5*a", "#DOMAIN!", "4 is not above 5*a, where x ends"),
     ],
