@@ -20,10 +20,11 @@ from .axis import Axis, CountedAxis, GroupAxis, RepeatAxis
 from .cells.units import named_unit_of
 from .charts import VERMILION, Chart, Series, drawn
 from .column import Column, Formula, Given, Iterated, SheetError
+from .messages.errors import sentence_case
 from .method_lines import spaced
 from .named import member, name_of
 from .quantity import Bounds
-from .workbook import Curve, FigureSpec, sentence_case
+from .workbook import Curve, FigureSpec
 
 __all__ = ["DeclaredFit", "stated_of", "told_apart"]
 

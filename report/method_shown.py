@@ -10,10 +10,10 @@ from typing import Any
 
 from .charts import COLOURS, INK, STYLES, Chart, Series, series_of
 from .column import Column, Given, SheetError
-from .messages.errors import listing
+from .messages.errors import listing, sentence_case
 from .method_errors import current, told_together
 from .named import name_of
-from .workbook import FigureSpec, TableSpec, sentence_case
+from .workbook import FigureSpec, TableSpec
 
 __all__ = ["drawing", "plot", "table", "trace"]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from functools import cache
@@ -31,7 +30,6 @@ __all__ = [
     "SquareSum",
     "TableSpec",
     "Workbook",
-    "sentence_case",
     "tables_of",
 ]
 
@@ -145,17 +143,6 @@ def tables_of(sheet: Sheet, aside: Set[str]) -> Iterator[TableSpec]:
     scalars = tuple(c.name for c in shown if c.axis is None and c.name not in given)
     if scalars:
         yield TableSpec("scalars", "Results", scalars)
-
-
-def sentence_case(said: str) -> str:
-    """What is said with a capital at its beginning, if that is a plain word: a symbol and ``pH`` stay.
-
-    >>> sentence_case("force by Johnson")
-    'Force by Johnson'
-    >>> sentence_case("pH by an electrode")
-    'pH by an electrode'
-    """
-    return said[0].upper() + said[1:] if re.match(r"[a-z]{2,}\b|a(?= )", said) else said
 
 
 @dataclass(frozen=True)

@@ -56,8 +56,8 @@ def test_what_needs_it_has_no_value_and_the_rest_goes_on(tmp_path: Path) -> None
     assert report["b"].status == report["both"].status == ("ok", "#INPUT!", "ok")
     np.testing.assert_allclose(report["a"].value, [1.00, 1.10, 1.30])
     np.testing.assert_array_equal(np.isnan(report["b"].value), [False, True, False])
-    assert float(report["mean_a"]) == pytest.approx(3.40e-3 / 3)
-    assert float(report["mean_both"]) == pytest.approx((3.00e-3 + 3.50e-3) / 2)
+    assert float(report["mean_a"]) == pytest.approx(3.40 / 3)
+    assert float(report["mean_both"]) == pytest.approx((3.00 + 3.50) / 2)  # in mm, as both are
     assert any("b[2] #INPUT!" in said for said in report.findings)
     assert any("over 2 of 3" in said for said in report.findings)
 
@@ -144,7 +144,7 @@ def test_the_verbs_go_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "b[2]  #INPUT!" in re.sub(" +", "  ", said.out)
     assert "bug" not in said.err
     assert "reason" in said.out
-    assert "mean_both = 0.0032500 m" in said.out
+    assert "mean_both = 3.2500 mm" in said.out
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
 from ...derivations.vocabulary import Vocabulary
+from ..messages.errors import sentence_case
 from ..result.numbers import read
-from ..workbook import sentence_case
 from .names import name_latex
 from .tree import Inline, Inlines, Math, Number, Refer, Unit
 

@@ -13,6 +13,7 @@ from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..inputs.measurements import LeftOut, Measurements
 from ..inputs.published import PublishedValue
+from ..messages.errors import sentence_case
 from ..quantity import span
 from ..result import verdict_words as words
 from ..result.chi_square import freedom, number, tail, tied
@@ -24,7 +25,7 @@ from ..result.statements import of_column
 from ..result.uncertain import Budget, Conformity, Contribution, Decision, draws_of
 from ..result.verdict import ALL, INPUT, UNREACHABLE, TableVerdict
 from ..sheet import Axis, GroupAxis
-from ..workbook import SquareSum, TableSpec, sentence_case
+from ..workbook import SquareSum, TableSpec
 from .material import Material
 from .parts import MOST, Head, Pair, SourceGroup, described, slug, why_address
 from .refereed import GOOD, RefereedPair, shown_mismatch

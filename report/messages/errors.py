@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -25,6 +26,7 @@ __all__ = [
     "listing",
     "render",
     "render_all",
+    "sentence_case",
     "suggest",
     "unknown",
     "why",
@@ -87,6 +89,17 @@ def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:
     if len(names) > most:
         return ", ".join(names[:most]) + f" ... ({len(names)} in all)"
     return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+def sentence_case(said: str) -> str:
+    """What is said with a capital at its beginning, if that is a plain word: a symbol and ``pH`` stay.
+
+    >>> sentence_case("force by Johnson")
+    'Force by Johnson'
+    >>> sentence_case("pH by an electrode")
+    'pH by an electrode'
+    """
+    return said[0].upper() + said[1:] if re.match(r"[a-z]{2,}\b|a(?= )", said) else said
 
 
 class Findings:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ..messages.errors import sentence_case
 from ..quantity import behind, span
-from ..workbook import sentence_case
 from .numbers import chance
 from .uncertain import Conformity, Decision
 

@@ -165,8 +165,6 @@ class Budget:
     """The other sources, which do nothing at these values."""
     tied: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """By (str, str); correlations with these."""
-    scattered: Scattered | None = None
-    """Of what was fitted, where the rows have a scatter."""
 
     @property
     def estimates(self) -> list[list[Contribution]]:

@@ -274,12 +274,11 @@ class Spread:
         own_parts = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         summed, least = tuple(self._summed(column)), _least(column)
         return Budget(
-            self.values.address(name, row), name, label, *own_parts, summed,
-            least=least, idle=idle, tied=tied, scattered=self._scattered(name, level),
-        )  # fmt: skip
+            self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
+        )
 
-    def _scattered(self, name: str, level: float) -> Scattered | None:
-        """How uncertain a number is by the scatter of the rows that it was fitted to."""
+    def scattered(self, name: str, level: float) -> Scattered | None:
+        """How uncertain a number is by the scatter of the rows that it was fitted to, if it was fitted."""
         workbook, values = self.inputs.workbook, self.values
         fits: tuple[SquareSum | Curve, ...] = (*workbook.squares, *workbook.curves)
         for fitted in fits:

@@ -74,5 +74,6 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     if int(draws) and (budget.u > 0 or budget.unlooked):
         drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
     limited = [each for each in report.inputs.limits if each.cell == (column.name, tuple(label))]
-    told = FORMATS[form](report, budget, drawn, tuple(map(spread.conformity, limited)))
+    beside = tuple(map(spread.conformity, limited)), spread.scattered(column.name, float(level))
+    told = FORMATS[form](report, budget, drawn, *beside)
     return told, not math.isnan(budget.value)

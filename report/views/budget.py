@@ -13,7 +13,16 @@ from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
-from ..result.uncertain import TOLERANCE, Budget, Conformity, Contribution, Distributed, Together, draws_of
+from ..result.uncertain import (
+    TOLERANCE,
+    Budget,
+    Conformity,
+    Contribution,
+    Distributed,
+    Scattered,
+    Together,
+    draws_of,
+)
 from .blocks import Block, TextTable, printers
 
 __all__ = ["FORMATS", "notes", "number", "percent", "sentence"]
@@ -44,11 +53,19 @@ def sentence(report: Report, budget: Budget) -> str:
 
 
 def _blocks(
-    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
+    report: Report,
+    budget: Budget,
+    drawn: Distributed | None = None,
+    limited: Sequence[Conformity] = (),
+    scattered: Scattered | None = None,
 ) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
     said = [sentence(report, budget), *_of_limits(report, limited)]
-    told = [*notes(report, budget), *_of_scatter(report, budget), *_of_draws(report, budget, drawn)]
+    told = [
+        *notes(report, budget),
+        *_of_scatter(report, budget, scattered),
+        *_of_draws(report, budget, drawn),
+    ]
     if rows := [_row(report, budget, each) for each in budget.contributions]:
         yield from (said, TextTable(HEADER, rows), told)
     else:
@@ -56,11 +73,14 @@ def _blocks(
 
 
 def _as_json(
-    report: Report, budget: Budget, drawn: Distributed | None = None, limited: Sequence[Conformity] = ()
+    report: Report,
+    budget: Budget,
+    drawn: Distributed | None = None,
+    limited: Sequence[Conformity] = (),
+    scattered: Scattered | None = None,
 ) -> str:
     """All digits, in SI."""
-    by = budget.scattered
-    scatter = {} if by is None else {"scatter": {"u": by.u, "dof": by.dof, "k": by.factor, "U": by.expanded}}
+    by = {"scatter": _scatter(scattered)} if scattered else {}
     monte_carlo = {} if drawn is None else {"monte_carlo": _drawn(drawn)}
     conformity = {"conformity": _conformity(limited[0])} if limited else {}
     return json.dumps(
@@ -82,13 +102,17 @@ def _as_json(
                 each.name: {"eigenvalues": each.eigenvalues, "rank": each.rank} for each in budget.summed
             },
             "correlations": [[*pair, r] for pair, r in budget.correlations.items()],
-            **scatter,
+            **by,
             **monte_carlo,
             **conformity,
         },
         indent=1,
         ensure_ascii=False,
     )
+
+
+def _scatter(by: Scattered) -> dict[str, object]:
+    return {"u": by.u, "dof": by.dof, "k": by.factor, "U": by.expanded}
 
 
 FORMATS = {**printers(_blocks), "json": _as_json}
@@ -177,9 +201,9 @@ def _together(summed: Together) -> str:
     return f"{cells} tell as much as {rank}: the eigenvalues of their correlation are {told}"
 
 
-def _of_scatter(report: Report, budget: Budget) -> Iterator[str]:
+def _of_scatter(report: Report, budget: Budget, found: Scattered | None) -> Iterator[str]:
     """What the rows say of a number that was fitted to them, whatever is stated of them."""
-    if (found := budget.scattered) is None:
+    if found is None:
         return
     unit = behind(report.shown[budget.name].unit)
     u, expanded = (f"{report.sure(budget.name, each).text}{unit}" for each in (found.u, found.expanded))

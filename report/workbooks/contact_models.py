@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
 from ...derivations.contact.prescribed import AUTHORS
+from ..messages.errors import sentence_case
 from ..quantity import POISSON, Bounds
-from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook, sentence_case
+from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook
 from . import soft_impact
 from .contact_models_charts import DAMPED, LOOPS, columns, over_speed
 
