@@ -136,7 +136,10 @@ def trace(
 
 @told_together
 def drawing(name: str, caption: str, *, number: str, alt: str) -> None:
-    """Show a picture that is the same for all data, by its name among the drawings of a workbook.
+    """Show a picture that is the same for all data.
+
+    A function draws it, of a report, which returns a figure of matplotlib: below the class stands
+    ``WORKBOOK = replace(Name.workbook, drawings=lambda: {"rig": draw_rig})``.
 
     Parameters
     ----------

@@ -279,7 +279,7 @@ def check_published(
             continue
         unit, _ = cells[value.columns[0]]
         of_rows = value.columns if value.about and value.about.kind == "r" else value.columns[:1]
-        for name in of_rows if "index" not in value.unread and value not in gone else ():
+        for name in of_rows if "index" not in value.unread and id(value) not in gone else ():
             if value.word or value.index not in cells[name][1]:
                 at, text = value.places.get("index"), value.word or index_text(value.index)
                 known = _indices(cells[name][1], words.get(name, {}))
@@ -297,10 +297,10 @@ def _of_rows_that_are_gone(
     tables: Collection[Measurements],
     findings: Findings,
     words: Words,
-) -> list[PublishedValue]:
-    """Several values of one row that the table has not: told once, in place of the index of each."""
+) -> set[int]:
+    """Several values of one row that the table has not, by identity: that is told once."""
     if len(tables) != 1:
-        return []  # and a number is not that of one row
+        return set()  # and a number is not that of one row
     (table,) = tables
     there, of = set(table.tests), dict[int, list[PublishedValue]]()
     for value in published:
@@ -316,7 +316,7 @@ def _of_rows_that_are_gone(
         known = f"{table.row} {listing(map(str, sorted(there)))}"
         told = {"file": table.file, "row": f"{table.row} {test}", "number": len(values), "known": known}
         findings.add("LS511", values[0].places.get("index"), **told)
-    return [value for values in several.values() for value in values]
+    return {id(value) for values in several.values() for value in values}
 
 
 def unit_fits(
