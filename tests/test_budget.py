@@ -22,7 +22,7 @@ from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import html, latex
-from loopsheet.report.views.budget import FORMATS
+from loopsheet.report.views.budget import FORMATS, Besides
 
 FILES = {
     "report.toml": """\
@@ -204,7 +204,9 @@ def test_draws_tell_of_a_cell_of_which_nothing_else_is_known(report: Report, u: 
         True,
         (math.nan, math.nan),
     )
-    told = FORMATS["text"](report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), found)
+    told = FORMATS["text"](
+        report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), Besides(found)
+    )
     digits = "1.2959 and 1.3094" if math.isfinite(u) else "1.296 and 1.309"
     assert "alpha_mean = 1.3026, and its uncertainty is not known" in told
     assert f"between {digits} (equal tails" in told
@@ -226,7 +228,9 @@ def test_distances_from_the_estimate_to_the_ends(
     found = Distributed(
         1000, 0, 1.3026, 1.3026, 0.0035, ends, ends, math.inf, 0.01, True, (math.nan, math.nan)
     )
-    told = FORMATS["text"](report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), found)
+    told = FORMATS["text"](
+        report, Budget("alpha_mean", "alpha_mean", (), 1.30264, level=0.95), Besides(found)
+    )
     assert f"(equal tails{around}" in told
     assert f"(the shortest{around}" in told
 

@@ -65,7 +65,7 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     """What is told, and whether the cell has a value."""
     from ..uncertainty.monte_carlo import draw
     from ..uncertainty.propagation import Spread
-    from ..views.budget import FORMATS
+    from ..views.budget import FORMATS, Besides
 
     column, label = find_one(report := study.computed, address)
     spread = Spread(report.inputs, report.values)
@@ -74,6 +74,7 @@ def _told(study: Study, address: str, form: str, level: str, draws: str, seed: s
     if int(draws) and (budget.u > 0 or budget.unlooked):
         drawn = draw(report.inputs, report.values, budget, int(draws), int(seed), study.step)
     limited = [each for each in report.inputs.limits if each.cell == (column.name, tuple(label))]
-    beside = tuple(map(spread.conformity, limited)), spread.scattered(column.name, float(level))
-    told = FORMATS[form](report, budget, drawn, *beside)
+    scattered = spread.scattered(column.name, float(level))
+    besides = Besides(drawn, tuple(map(spread.conformity, limited)), scattered)
+    told = FORMATS[form](report, budget, besides)
     return told, not math.isnan(budget.value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from ..cells.address import address
 from ..distribution import Shape
@@ -25,12 +26,27 @@ from ..result.uncertain import (
 )
 from .blocks import Block, TextTable, printers
 
-__all__ = ["FORMATS", "notes", "number", "percent", "sentence"]
+__all__ = ["FORMATS", "Besides", "notes", "number", "percent", "sentence"]
 
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")
 _NONE = "—"
 SHIFTED = 0.05
 """In standard uncertainties: so far from its expectation a given number is no estimate of it."""
+
+
+@dataclass(frozen=True)
+class Besides:
+    """What is told beside a budget."""
+
+    drawn: Distributed | None = None
+    """What draws told."""
+    limited: Sequence[Conformity] = ()
+    """The cell beside its limits."""
+    scattered: Scattered | None = None
+    """What the rows say that it was fitted to."""
+
+
+NOTHING = Besides()
 
 
 def sentence(report: Report, budget: Budget) -> str:
@@ -52,37 +68,22 @@ def sentence(report: Report, budget: Budget) -> str:
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {_level(budget)}"
 
 
-def _blocks(
-    report: Report,
-    budget: Budget,
-    drawn: Distributed | None = None,
-    limited: Sequence[Conformity] = (),
-    scattered: Scattered | None = None,
-) -> Iterator[Block]:
+def _blocks(report: Report, budget: Budget, besides: Besides = NOTHING) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
-    said = [sentence(report, budget), *_of_limits(report, limited)]
-    told = [
-        *notes(report, budget),
-        *_of_scatter(report, budget, scattered),
-        *_of_draws(report, budget, drawn),
-    ]
+    said = [sentence(report, budget), *_of_limits(report, besides.limited)]
+    told = [*notes(report, budget), *_of_scatter(report, budget, besides.scattered)]
+    told += _of_draws(report, budget, besides.drawn)
     if rows := [_row(report, budget, each) for each in budget.contributions]:
         yield from (said, TextTable(HEADER, rows), told)
     else:
         yield [*said, *told]
 
 
-def _as_json(
-    report: Report,
-    budget: Budget,
-    drawn: Distributed | None = None,
-    limited: Sequence[Conformity] = (),
-    scattered: Scattered | None = None,
-) -> str:
+def _as_json(report: Report, budget: Budget, besides: Besides = NOTHING) -> str:
     """All digits, in SI."""
-    by = {"scatter": _scatter(scattered)} if scattered else {}
-    monte_carlo = {} if drawn is None else {"monte_carlo": _drawn(drawn)}
-    conformity = {"conformity": _conformity(limited[0])} if limited else {}
+    by = {"scatter": _scatter(besides.scattered)} if besides.scattered else {}
+    monte_carlo = {} if besides.drawn is None else {"monte_carlo": _drawn(besides.drawn)}
+    conformity = {"conformity": _conformity(besides.limited[0])} if besides.limited else {}
     return json.dumps(
         {
             "schema": 1,

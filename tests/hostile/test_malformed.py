@@ -30,6 +30,7 @@ from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.views import html, latex
 from loopsheet.report.views import json as data
 from loopsheet.report.views.budget import FORMATS as BUDGETS
+from loopsheet.report.views.budget import Besides
 from loopsheet.report.views.checks import FORMATS
 
 
@@ -56,18 +57,18 @@ def ends(folder: Path, further: bool) -> str:
         uncertain = report.uncertain()
         for budget in uncertain.budgets:
             for render in BUDGETS.values():
-                render(report, budget, None)
+                render(report, budget)
         stage = "the limits"
         for found in uncertain.conformities:
             for render in BUDGETS.values():
-                render(report, found.budget, None, [found])
+                render(report, found.budget, Besides(limited=[found]))
         if further:
             stage = "the draws"
             for budget in uncertain.budgets[:1]:
                 if budget.u > 0:
                     drawn = draw(report.inputs, report.values, budget, 2000)
                     for render in BUDGETS.values():
-                        render(report, budget, drawn)
+                        render(report, budget, Besides(drawn))
             stage = "the referee"
             report = stages.refereed(report)
             stage = "the views"
