@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -110,15 +110,10 @@ class Estimates(NDArrayOperatorsMixin):
             known = listing([*self.index, *filter(None, dict.fromkeys(self.words))])
             raise KeyError(f"{self.name} has no row '{row}': {known or 'it is a single number'}")
 
-        def cut(every: tuple[str, ...]) -> tuple[str, ...]:
-            return tuple(every[n] for n in places)
-
+        rowwise = {name: every for name, every in vars(self).items() if isinstance(every, tuple)}
+        own: dict[str, Any] = {name: tuple(every[n] for n in places) for name, every in rowwise.items()}
         at = places if len(places) > 1 else places[0]
-        texts = cut(self.index), cut(self.names), cut(self.status), cut(self.texts), cut(self.sure)
-        value, u = (np.asarray(each[at]) for each in (self.value, self.u))
-        return Estimates(
-            self.name, self.meaning, self.unit, value, u, *texts, cut(self.addresses), cut(self.words)
-        )
+        return replace(self, value=np.asarray(self.value[at]), u=np.asarray(self.u[at]), **own)
 
     def __format__(self, how: str) -> str:
         """The value of a scalar with a format, ``{x:.2f}``; without one what it is."""

@@ -124,14 +124,15 @@ def trace(
     """
     across, (up,) = _over_rows(x), _columns(y)
     own = "level" if up.axis is None else "line" if up.axis.ordinals else "points"
-    if (style or own) not in STYLES or (own == "level") != ((style or own) == "level"):
+    style = style or own
+    if style not in STYLES or (style == "level") != (own == "level"):
         raise SheetError(f"style={style!r} is none of {up.name}: a level is of one number, others of columns")
     if own != "level":
         series_of(across, up)  # which says what is wrong
     if not re.fullmatch("#[0-9a-f]{6}", colour):
         raise SheetError(f"colour={colour!r} is none: #rrggbb, as '#0072b2'")
     told = "" if value is None else _columns(value)[0].name
-    return Series(across.name, up.name, label or up.meaning, style or own, colour, each, named, told, bars)
+    return Series(across.name, up.name, label or up.meaning, style, colour, each, named, told, bars)
 
 
 @told_together

@@ -309,7 +309,7 @@ class Said:
 
     def amended(self) -> Inlines:
         """What comes out with the known misprints put right: what they are, then what comes out."""
-        return joined(map(self.told, words.amending(self.referee)), " ")
+        return joined(map(self.told, words.amended(self.referee)), " ")
 
     def fits(self) -> dict[str, str]:
         """What is said of the published value of each average and fit, by its cell."""

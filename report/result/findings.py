@@ -193,7 +193,7 @@ def of_referee(report: Report) -> tuple[Check, ...]:
     if found.joint.possible:
         nothing = "all values come out as it is; drop the known misprints"
         return (*tables, Check("table", MISPRINTS, False, nothing, at))
-    said = "; ".join(words.amending(found))
+    said = "; ".join(words.amended(found))
     return (*tables, Check("table", MISPRINTS, found.amended.possible, said, at))
 
 

@@ -40,7 +40,7 @@ __all__ = [
     "POSSIBLE",
     "address",
     "all_together",
-    "amending",
+    "amended",
     "at_least",
     "because",
     "bounds",
@@ -412,24 +412,20 @@ def because(label: Relabelled) -> str:
     return f"{kind}; the worst mismatch is {_half_units(label.mismatch)}{others}"
 
 
-def _amended(found: Referee) -> str:
-    """What comes out with the known misprints put right; empty if none are known."""
+def amended(found: Referee) -> tuple[str, ...]:
+    """What comes out with the known misprints put right, and what would explain that not all does."""
     if found.amended is None:
-        return ""
+        return ()
     right = enumerated(
         f"{address(each.cell, each.index)} as {each.would_print}, "
         + ("as it is here" if each.would_print == each.printed else f"not {each.printed}")
         for each in found.errata
     )
-    return f"with {right}, {together(found.amended)}"
-
-
-def amending(found: Referee) -> tuple[str, ...]:
-    """The same, and what would explain that even so not all comes out."""
-    if found.amended is None or found.amended.possible:
-        return tuple(filter(None, (_amended(found),)))
+    said = f"with {right}, {together(found.amended)}"
+    if found.amended.possible:
+        return (said,)
     first, *others = perhaps(found.misprints)
-    return _amended(found), f"with that, {first}", *others
+    return said, f"with that, {first}", *others
 
 
 def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
@@ -449,7 +445,7 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
         yield f"  label    {relabelled(label)}"
     for each in found.fits:
         yield f"  fit      {fit(each, meaning)}"
-    for n, said in enumerate(amending(found)):
+    for n, said in enumerate(amended(found)):
         yield f"  {said if n else f'amended  {said}'}"
 
 
