@@ -47,8 +47,13 @@ def printed(text: str, unit: str = "1", scale: Fraction = Fraction(1)) -> Printe
         (1524.587, printed("1516"), "1525"),
         (1524.587, printed("15e2"), "1500"),
         (-0.0004, printed("0.12"), "-0.00"),
-        (2.5, printed("7"), "2"),
-        (1e70, printed("1.50"), f"{int(1e70)}.00"),
+        (2.5, printed("7"), "3"),
+        (2.5, printed("2"), "2"),  # a half may have gone either way
+        (-2.5, printed("-3"), "-3"),
+        (0.0437225, printed("0.043722"), "0.043722"),
+        (0.04372249999999999, printed("0.043723"), "0.043723"),  # on whichever side the double lies
+        (0.0437224999999999, printed("0.043723"), "0.043722"),
+        (1e70, printed("1.50"), f"1{'0' * 70}.00"),
         (238.94213, printed("2.3894e+02"), "238.94"),
         (1.2345, printed("+1.50"), "1.23"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -49,31 +49,43 @@ def print_as(value: float, like: Printed) -> str:
     >>> print_as(4.15439e-05, Printed("41.61", "um", Fraction("4.161e-5"), Fraction(1, 10**6)))
     '41.54'
 
-    The nearest double to 0.232818234301152496 is a little more than what is rounded up:
+    The nearest double to 0.232818234301152496 is a little more than what is rounded up, and a half may have
+    gone either way:
 
-    >>> text = "0.232818234301152"
-    >>> print_as(0.232818234301152496, Printed(text, "1", Fraction(text), Fraction(1)))
+    >>> for value, text in (0.232818234301152496, "0.232818234301152"), (0.125, "0.12"), (0.125, "0.13"):
+    ...     print_as(value, Printed(text, "1", Fraction(text), Fraction(1)))
     '0.232818234301152'
+    '0.12'
+    '0.13'
     """
+    sign, places = "-" if like.of(Fraction(value)) < 0 else "", like.decimals
+    texts = [sign + _written(abs(digits), places) for digits in _digits(value, like)]
+    return next((text for text in texts if Fraction(text) == Fraction(like.text)), texts[0])
+
+
+def _digits(value: float, like: Printed) -> Iterator[int]:
+    """What a value is as a number of the last printed digits; another, too, where both would be right."""
+    unit = Fraction(10) ** -like.decimals
     if like.mode == "rounded" and like.digits >= DIGITS:
         # It stands for all that rounds to it, of which one may print so.
-        ends = (Fraction(value) + way * Fraction(math.ulp(value)) / 2 for way in (0, -1, 1))
-        texts = [_print(end, like) for end in ends]
-        return next((text for text in texts if Fraction(text) == Fraction(like.text)), texts[0])
-    return _print(Fraction(value), like)
-
-
-def _print(value: Fraction, like: Printed) -> str:
-    in_unit, places = like.of(value), like.decimals
+        for way in (0, -1, 1):
+            yield round(like.of(Fraction(value) + way * Fraction(math.ulp(value)) / 2) / unit)
+        return
+    # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
+    exact = like.of(Fraction(value))
+    near = Fraction(Context(prec=DIGITS).divide(Decimal(exact.numerator), Decimal(exact.denominator))) / unit
     if like.mode == "truncated":
-        # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
-        near = Context(prec=DIGITS).divide(Decimal(in_unit.numerator), Decimal(in_unit.denominator))
-        digits = math.trunc(abs(Fraction(near)) * Fraction(10) ** places)
+        yield math.trunc(near)
+    elif near % 1 == Fraction(1, 2):
+        yield from sorted((math.floor(near), math.ceil(near)), key=abs, reverse=True)
     else:
-        digits = round(abs(in_unit) * Fraction(10) ** places)
+        yield round(near)
+
+
+def _written(digits: int, places: int) -> str:
     text = str(digits * 10 ** max(0, -places)).zfill(places + 1)
     point = len(text) - places
-    return f"{'-' if in_unit < 0 else ''}{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
+    return f"{text[:point]}{'.' if places > 0 else ''}{text[point:]}"
 
 
 def prints_same(value: float, printed: Printed) -> bool:

@@ -1,7 +1,8 @@
 """Numbers and units as they are shown: as many digits as are known, in both formats, aligned.
 
-A shown number is text. It is made from the exact value of the double, so that it is the same everywhere,
-and no calculation ever reads it.
+A shown number is text, and no calculation ever reads it. It is made from the fifteen digits that every double
+has, and a half of them goes up (ISO 80000-1, B.3, rule B), as in spreadsheets: 0.0437225 is shown alike by
+all that computed it, whatever the last bit of each.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal, localcontext
+from decimal import ROUND_CEILING, ROUND_HALF_UP, Context, Decimal, localcontext
 
 __all__ = [
     "MOST",
@@ -37,7 +38,7 @@ _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
 _LEADING = 3
 """So are numbers with more zeros than this behind the decimal point."""
-_EXACTLY = Context(prec=800, rounding=ROUND_HALF_EVEN)
+_EXACTLY = Context(prec=800, rounding=ROUND_HALF_UP)
 _DOUBLE = 15
 """Digits that every double has."""
 _GROUPS = 5
@@ -134,26 +135,30 @@ def last_place(value: float, u: float, digits: int, most: int = MOST) -> int:
         return min(max(_told(u, most)[1], size - _DOUBLE + 1), order(value))  # a double has no more
     place = order(value) - digits + 1
     if not u:
-        place = max(place, min(0, int(_round(value, digits).normalize().as_tuple().exponent)))
+        place = max(place, min(0, int(_round(_kept(value), digits).normalize().as_tuple().exponent)))
     return 0 if 0 < place <= _BEYOND else place
 
 
-def _round(value: float | Decimal, digits: int, rounding: str = ROUND_HALF_EVEN) -> Decimal:
-    """The exact value of a double with significant digits."""
+def _kept(value: float, digits: int = 0) -> Decimal:
+    """A double in the digits that every double has, or in more."""
+    return _round(Decimal(value), max(_DOUBLE, digits))
+
+
+def _round(value: Decimal, digits: int, rounding: str = ROUND_HALF_UP) -> Decimal:
+    """With significant digits."""
     with localcontext(Context(prec=digits, rounding=rounding)) as context:
-        return context.plus(Decimal(value))
+        return context.plus(value)
 
 
 def _told(u: float, most: int) -> tuple[Decimal, int]:
     """An uncertainty as it is told, and the power of ten of its last digit.
 
     Rounded, but up where rounding would make it smaller by more than a twentieth (JCGM 100, 7.2.6; EA-4/02,
-    6.3). A half goes up, as in spreadsheets: an uncertainty is rather told larger. Whether it is one, the
-    digits say that are believed; on which side of it the double lies, its last bit does.
+    6.3). Whether it is a half, the digits say that are believed.
     """
-    short = _round(_round(u, _SURE), most, ROUND_HALF_UP)
+    short = _round(_round(_kept(u), _SURE), most)
     if short < Decimal(u) * Decimal("0.95"):
-        short = _round(u, most, ROUND_CEILING)
+        short = _round(Decimal(u), most, ROUND_CEILING)
     return short, short.adjusted() - most + 1
 
 
@@ -176,7 +181,7 @@ def at(value: float, place: int, scientific: bool | None = None) -> Numeral:
     ('1.019\xa0×\xa010⁹', '1525', '10.000')
     """
     with localcontext(_EXACTLY):
-        short = _to(Decimal(value), place)
+        short = _to(value, place)
         first = short.adjusted() if short else 0
         if scientific is None:
             scientific = bool(short) and (place > 0 or first < -_LEADING)
@@ -186,8 +191,8 @@ def at(value: float, place: int, scientific: bool | None = None) -> Numeral:
         return _written(short, place + first - order(value), first)
 
 
-def _to(exact: Decimal, place: int) -> Decimal:
-    return exact.quantize(Decimal(1).scaleb(place))
+def _to(value: float, place: int) -> Decimal:
+    return _kept(value, order(value) - place + 1).quantize(Decimal(1).scaleb(place))
 
 
 def _written(short: Decimal, place: int, power: int | None) -> Numeral:
@@ -314,7 +319,7 @@ def stated(value: float, u: float, most: int = MOST) -> tuple[Numeral, Numeral]:
         return at(value, own), uncertainty(u, most)
     power = at(max(abs(value), u), place).exponent
     with localcontext(_EXACTLY):
-        return _written(_to(Decimal(value), place), place, power), _written(told, place, power)
+        return _written(_to(value, place), place, power), _written(told, place, power)
 
 
 def table_format(figures: Iterable[Numeral | None]) -> str:

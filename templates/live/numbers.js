@@ -42,14 +42,11 @@ function ofDouble(x) {
   return shift >= 0 ? { n: n << BigInt(shift), d: 1n } : { n, d: 1n << BigInt(-shift) };
 }
 
-// The whole number nearest to n/d, n >= 0, ties to even.
-function nearest(n, d) {
-  const q = n / d, rest = 2n * (n - q * d);
-  return rest > d || (rest === d && q & 1n) ? q + 1n : q;
-}
+// The whole number nearest to n/d, n >= 0, a half up or down.
+const halfUp = (n, d) => (2n * n + d) / (2n * d), halfDown = (n, d) => (2n * n + d - 1n) / (2n * d);
 
-// n/d with so many decimals (fewer than none: rounded to tens), ties to even; or to whole numbers otherwise.
-function fixedExact({ n, d }, places, whole = nearest) {
+// n/d with so many decimals (fewer than none: rounded to tens), a half up; or to whole numbers otherwise.
+function fixedExact({ n, d }, places, whole = halfUp) {
   const scaled = places >= 0 ? whole(magnitude(n) * tenTo(places), d) : whole(magnitude(n), d * tenTo(-places));
   let digits = places >= 0 ? scaled.toString() : (scaled * tenTo(-places)).toString();
   if (places > 0) {
@@ -61,30 +58,30 @@ function fixedExact({ n, d }, places, whole = nearest) {
 
 // --- digits of a double ----------------------------------------------------------------------------------
 
-// toFixed and toExponential are exact but for ties, which they round up. A tie shows: with one digit more
-// the text ends in 5 and is read as the same number.
-const mayBeTie = (longer, x) => /5(?:e|$)/.test(longer) && Number(longer) === x;
+// The significant digits of a number, the fifteen that every double has or more, and the power of ten of the first; a half
+// goes up.
+function kept(x, digits = 15) {
+  const [mantissa, power] = Math.abs(x).toExponential(Math.min(Math.max(14, digits - 1), 100)).split("e");
+  return { all: mantissa.replace(".", ""), first: Number(power) };
+}
 
+// Rounded to so many of them (none: whether they are half of one more), as a whole number.
+const head = (all, digits) => BigInt(all.slice(0, Math.max(0, digits))) + BigInt(digits >= 0 && all[digits] >= "5");
+
+// With so many decimals; fewer than none: rounded to tens.
 function fixed(x, places) {
-  const plain = Math.abs(x) < 1e21 && places >= 0 && places < 100;
-  return plain && !mayBeTie(x.toFixed(places + 1), x) ? x.toFixed(places) : fixedExact(ofDouble(x), places);
+  const { all, first } = kept(x, order(x) + 1 + places), digits = first + 1 + places, idle = Math.max(digits - all.length, 0) + Math.max(-places, 0);
+  const text = String(head(all, digits) * tenTo(idle)).padStart(Math.max(places, 0) + 1, "0"), point = text.length - Math.max(places, 0);
+  return `${x < 0 ? "-" : ""}${text.slice(0, point)}${places > 0 ? `.${text.slice(point)}` : ""}`;
 }
 
 // The power of ten of the first digit of a number; 0 for zero.
 const order = (x) => Number(x.toExponential().split("e")[1]);
 
-// The significant digits of a number that is not zero, and the power of ten of the first.
+// The significant digits of a number that is not zero, at most fifteen, and the power of ten of the first.
 function significant(x, digits) {
-  const size = Math.abs(x);
-  if (mayBeTie(size.toExponential(digits), size)) {
-    const first = Number(size.toExponential(20).split("e")[1]), shift = digits - 1 - first;
-    const { n, d } = ofDouble(size);
-    const whole = shift >= 0 ? nearest(n * tenTo(shift), d) : nearest(n, d * tenTo(-shift));
-    const text = whole.toString(); // one digit more where 9.95 became 10.0
-    return { digits: text.slice(0, digits), first: first + text.length - digits };
-  }
-  const [mantissa, power] = size.toExponential(digits - 1).split("e");
-  return { digits: mantissa.replace(".", ""), first: Number(power) };
+  const { all, first } = kept(x), text = String(head(all, digits)); // one digit more where 9.95 became 10.0
+  return { digits: text.slice(0, digits), first: first + text.length - digits };
 }
 
 // --- numbers as they are shown ---------------------------------------------------------------------------
@@ -212,6 +209,9 @@ function decimalsOf(text) {
   return (mantissa.split(".")[1] ?? "").length - Number(power);
 }
 
+// Significant digits as printed: zeros count unless they lead.
+const digitsOf = (text) => text.replace(/e.*|\D/gi, "").replace(/^0+/, "").length;
+
 // A printed number with so many units of its last digit more; what is no number stays.
 function stepped(text, by) {
   if (!NUMBER.test(text)) return text;
@@ -226,13 +226,14 @@ function nearExact(x) {
 }
 
 // A double beside a printed number: printed as that is, how far off in units of its last digit, the same? Its unit is n/d
-// in SI, its zero zero/d.
+// in SI, its zero zero/d. A half may have gone either way.
 function beside(value, text, [n, d, zero = 0n], truncated) {
   const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);
-  const inUnit = { n: exact.n * d - zero * exact.d, d: exact.d * n };
-  const again = truncated ? fixedExact(nearExact(inUnit), places, (n, d) => n / d) : fixedExact(inUnit, places);
+  const inUnit = { n: exact.n * d - zero * exact.d, d: exact.d * n }, near = digitsOf(text) < 15 || truncated ? nearExact(inUnit) : inUnit;
+  const other = (whole) => fixedExact(near, places, whole), isPrinted = (again) => readExact(again).n * printed.d === printed.n * readExact(again).d;
+  const ways = truncated ? [other((n, d) => n / d)] : [other(halfUp), other(halfDown)];
+  const again = ways.find(isPrinted) ?? ways[0];
   const off = { n: inUnit.n * printed.d - printed.n * inUnit.d, d: inUnit.d * printed.d };
   const distance = places >= 0 ? { n: off.n * tenTo(places), d: off.d } : { n: off.n, d: off.d * tenTo(-places) };
-  const other = readExact(again);
-  return { again, distance: toDouble(distance), same: other.n * printed.d === printed.n * other.d };
+  return { again, distance: toDouble(distance), same: isPrinted(again) };
 }
