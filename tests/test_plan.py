@@ -13,6 +13,7 @@ from loopsheet.derivations.equation import Equation
 from loopsheet.derivations.reductions import Median
 from loopsheet.report.cli import main
 from loopsheet.report.engines.numpy import Program, evaluate
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.plan.derivatives import derivatives, rounding
 from loopsheet.report.plan.domain import defined
 from loopsheet.report.plan.lowering import lowered
@@ -216,3 +217,9 @@ def test_the_command_line_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
     )
     assert main(["show", "all", "paper", "--plan"]) == 0
     assert "x_m2 on pairs = x_p_j/(" in capsys.readouterr().out
+
+
+def test_conditions_are_written_as_people_do(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "line_s", str(PAPER.parent / "gum_h3"), "--plan"]) == 0
+    condition = "1/(n_of_line_s - 2) >= 0 and sum(line_residual**2, readings) >= 0 and n_of_line_s - 2 != 0"
+    assert f"    defined: {condition}\n" in capsys.readouterr().out

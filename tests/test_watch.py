@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -153,7 +154,12 @@ def test_what_is_saved_is_built_again(tmp_path: Path) -> None:
         last = json.loads(get(f"{address}news?known={wrong['known']}")[1])
         assert (last["number"], last["error"]) == (2, "")
         assert "d[1]" in last["changed"]
-        assert get(f"{address}report.html")[1] != page
+        again = get(f"{address}report.html")[1]
+        assert again != page
+        since = len(watch.said.read_text())
+        shutil.rmtree(folder / "out")
+        watch.until("4 files in ", since)
+        assert get(f"{address}report.html")[1] == again
         watch.process.send_signal(signal.SIGINT)
         assert watch.process.wait(20) == 0
         assert "Traceback" not in watch.said.read_text()

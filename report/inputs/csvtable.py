@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from .sources import Source
 
-__all__ = ["CsvRow", "CsvTable", "Field", "is_number", "match_columns", "read_table"]
+__all__ = ["CsvRow", "CsvTable", "Field", "is_number", "match_columns", "read_table", "without"]
 
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
@@ -331,7 +331,7 @@ def match_columns(
     """
     known, own = [*required, *optional], called or {}
     strange = {name for name in names if name and name not in known}
-    lacking = [own.get(name, name) for name in required if name not in names]
+    renamed = [own.get(name, name) for name in required if name not in names]
     places: dict[str, int] = {}
     meant: Counter[str | None] = Counter()
     for place, (name, field) in enumerate(zip(names, table.header, strict=True)):
@@ -344,11 +344,18 @@ def match_columns(
             missing = [own.get(word, word) for word in known if word not in names]
             meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
             suggestion = for_left_out(name) or suggest(name, missing) or suggest(name, told)
-            if not suggestion and len(strange) == len(lacking) == 1:  # renamed
-                suggestion = f"'{lacking[0]}' is missing: did you mean that?"
-                meant[lacking[0]] += 1
+            if not suggestion and len(strange) == len(renamed) == 1:
+                suggestion = f"'{renamed[0]}' is missing: did you mean that?"
+                meant[renamed[0]] += 1
             findings.add("LS303", table.at(field), text=name, known=listing(told), suggestion=suggestion)
-    for name, example in required.items():
-        if name not in places and not meant[own.get(name, name)]:
-            findings.add("LS301", table.end_of_header(), text=name, example=example)
+    lacking = (name for name in required if name not in places and not meant[own.get(name, name)])
+    without(table, findings, {name: required[name] for name in lacking})
     return places
+
+
+def without(table: CsvTable, findings: Findings, examples: Mapping[str, str]) -> None:
+    """Tell which columns a table lacks, if any, with a header for each as it may be written."""
+    if examples:
+        names = listing((f"'{name}'" for name in examples), last="and")
+        told = f"s {names} are" if len(examples) > 1 else f" {names} is"
+        findings.add("LS301", table.end_of_header(), text=told, example=",".join(examples.values()))

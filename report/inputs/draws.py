@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .csvtable import read_table
+from .csvtable import read_table, without
 from .measurements import read_head, read_unit
 from .number_text import NumberError, read_number
 
@@ -38,7 +38,7 @@ def read_draws(source: Source, of: Declared, findings: Findings) -> tuple[float,
     heads = [read_head(table, field, {of.name: of}, findings) for field in table.header]
     place = next((n for n, head in enumerate(heads) if head and head.name == of.name), None)
     if place is None:
-        findings.add("LS301", table.end_of_header(), text=of.name, example=example)
+        without(table, findings, {of.name: example})
         return None
     _, unit = read_unit(table, heads, place, of, findings)
     if unit is None or len(findings.found) > before:

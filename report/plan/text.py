@@ -3,10 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from typing import Any
+
+from sympy import Ne, Or, default_sort_key
+from sympy.printing.str import StrPrinter
 
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total, expressions
 
 __all__ = ["text"]
+
+
+class _Printer(StrPrinter):
+    """Formulas as a person types them."""
+
+    def _print_Relational(self, expr: Any) -> str:
+        word = "!=" if isinstance(expr, Ne) else expr.rel_op
+        return f"{self._print(expr.lhs)} {word} {self._print(expr.rhs)}"
+
+    def _print_And(self, expr: Any) -> str:
+        parts = sorted(expr.args, key=default_sort_key)
+        return " and ".join(f"({self._print(p)})" if isinstance(p, Or) else self._print(p) for p in parts)
+
+    def _print_Or(self, expr: Any) -> str:
+        return " or ".join(map(self._print, sorted(expr.args, key=default_sort_key)))
+
+
+def _plain(expr: Any) -> str:
+    return str(_Printer({"full_prec": False}).doprint(expr))
 
 
 def text(plan: Plan, columns: Collection[str] | None = None) -> str:
@@ -34,11 +57,11 @@ def _on(node: GivenNode | Map | RootNode) -> str:
 def _node(plan: Plan, node: Node) -> Iterator[str]:
     """The lines of a node: what it is, then what is asked of it."""
     if isinstance(node, Total):
-        yield f"{node.symbol}: {node.word} over {node.over.name} of {node.terms}"
+        yield f"{node.symbol}: {node.word} over {node.over.name} of {_plain(node.terms)}"
         return
     if isinstance(node, Part):
         on = "" if node.axis is None else f" on {node.axis.name}"
-        yield f"{node.symbol}{on} = {node.value}"
+        yield f"{node.symbol}{on} = {_plain(node.value)}"
         return
     if isinstance(node, LoopNode):
         yield f"{', '.join(str(plan.own[column.name]) for column in node.columns)}: again and again"
@@ -50,23 +73,23 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
     if isinstance(node, GivenNode):
         yield f"{name}: given"
         if node.allowed is not None:
-            yield f"    allowed: {node.allowed}"
+            yield f"    allowed: {_plain(node.allowed)}"
         return
     if isinstance(node, Map):
-        yield f"{name} = {node.value}"
+        yield f"{name} = {_plain(node.value)}"
         if str(node.defined) != "True":
-            yield f"    defined: {node.defined}"
+            yield f"    defined: {_plain(node.defined)}"
         if str(node.positive) not in ("True", "False"):
-            yield f"    positive: {node.positive}"
+            yield f"    positive: {_plain(node.positive)}"
     else:
-        yield f"{name} = {node.value} for the only root {node.unknown} of"
-        yield f"    0 = {node.form}"
-        yield f"    between: {node.low} and {node.high}"
+        yield f"{name} = {_plain(node.value)} for the only root {node.unknown} of"
+        yield f"    0 = {_plain(node.form)}"
+        yield f"    between: {_plain(node.low)} and {_plain(node.high)}"
         signs = ((node.sign_low, "lower"), (node.sign_high, "upper"))
         yield from (f"    sign at the {end} end: {sign}" for sign, end in signs if sign is not None)
-        yield from (f"    turning at: {point}" for point in node.turning)
-        yield f"    start: {node.start}, {node.steps} steps"
-    yield from (f"    requires: {condition}" for condition in node.requires)
+        yield from (f"    turning at: {_plain(point)}" for point in node.turning)
+        yield f"    start: {_plain(node.start)}, {node.steps} steps"
+    yield from (f"    requires: {_plain(condition)}" for condition in node.requires)
 
 
 def _stands_for(leaf: Leaf) -> str:

@@ -38,6 +38,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Build and wait, until Ctrl-C."""
     from ..build import parse_formats
+    from ..files.values import NAME
     from ..inputs.folders import report_folder, told
     from ..machine.local_server import Server
     from ..messages.diagnostics import visible
@@ -49,26 +50,28 @@ def run(options: argparse.Namespace) -> int:
         with Server(out) as server:
             said = f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)"
             print(visible(said), flush=True)
-            _watch(folder, lambda: _again(folder, out, formats, server.tell))
+            _watch(folder, out / NAME, lambda: _again(folder, out, formats, server.tell))
     except KeyboardInterrupt as stopped:
         if getattr(stopped, "number", signal.SIGINT) != signal.SIGINT:
             raise
     return OK
 
 
-def _watch(folder: Path, build: Callable[[], Iterable[str]]) -> None:
-    """Build whenever a file of the folder itself, or one that was read last, is another one."""
+def _watch(folder: Path, result: Path, build: Callable[[], Iterable[str]]) -> None:
+    """Build whenever a file of the folder, or one that was read last, is another, or the result is gone."""
     read: set[str] = set()
     seen: Look | None = None
+    there = False
     while True:
         now = _look(folder, read)
-        if now == seen:
+        if now == seen and result.exists() >= there:
             time.sleep(PAUSE)
             continue
         time.sleep(PAUSE)
         if now == _look(folder, read):
             read |= {*build()}
             seen = {**now, **{name: found for name, found in _look(folder, read).items() if name not in now}}
+            there = result.exists()
 
 
 def _look(folder: Path, names: Iterable[str]) -> Look:
