@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from .archive.crate import added
 from .files.manifest import manifest_of
-from .inputs.folders import INPUTS, is_report, output, told
+from .inputs.folders import INPUTS, holds, is_report, output, told
 from .machine.background import Background, Later
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
-from .messages.errors import UsageError, unknown
+from .messages.errors import UsageError, diagnose, unknown
 from .stages import Step, book, refereed_values, refuse_too_many_rows, silent
 from .study import Recipe, Study
 from .views import FORMATS, ON_REQUEST
@@ -89,6 +89,7 @@ def built(
     """
     if not study.folder.is_dir():
         _ = study.inputs  # which tells, before the outputs' folder makes it
+    _refuse_anothers(study, out)
     with staged(out, tell, lambda place: _of_a_crate(place, study.folder)) as stage:
         said: list[str] = []
 
@@ -169,10 +170,23 @@ def _names(stage: Path) -> list[str]:
     return sorted(p.relative_to(stage).as_posix() for p in stage.rglob("*") if p.is_file())
 
 
+def _of_another(study: Study, out: Path) -> Path | None:
+    """The other report folder whose output goes there."""
+    other = out.parent
+    own = out == output(other) and is_report(other)
+    return other if own and other.resolve() != study.folder.resolve() else None
+
+
+def _refuse_anothers(study: Study, out: Path) -> None:
+    """Refuse to put a report in the place of that of another folder, which is there as it was built."""
+    other, before = _of_another(study, out), manifest_of(out)
+    if other and before and holds(other, before.inputs):
+        raise UsageError(diagnose("LS628", text=out.as_posix(), known=told(other)))
+
+
 def _begun(title: str, study: Study, out: Path) -> str:
     said = f"building '{title}' from {told(study.folder)} into {out}"
-    other = out.parent
-    if out == output(other) and is_report(other) and other.resolve() != study.folder.resolve():
+    if other := _of_another(study, out):
         said += f", where that of {told(other)} goes"
     before = manifest_of(out)  # none, or damaged: `verify` tells of that
     return f"{said}, in place of '{before.title}'" if before and before.title != title else said

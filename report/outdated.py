@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from .files.manifest import manifest_of
+from .files.manifest import NAME, manifest_of
 from .inputs.folders import PAPER, changed, is_report, output
 from .messages.diagnostics import Check
 from .messages.errors import Location, listing
@@ -45,9 +45,16 @@ def _touched(folder: Path) -> Iterator[Check]:
     """A warning if outputs are not as they were built."""
     out = output(folder)
     manifest = manifest_of(out)
-    if manifest and (names := sorted(changed(out, manifest.outputs))):
+    said = ""
+    if manifest is None and (out / NAME).exists():
+        said = (
+            f"{(out / NAME).as_posix()} is damaged, so that nobody can tell whether {out.as_posix()} is as "
+        )
+        said += "it was built: build it again"
+    elif manifest and (names := sorted(changed(out, manifest.outputs))):
         after = listing(names, last="and")
         said = f"{out.as_posix()} is not as it was built, {after}: 'loopsheet verify' tells more"
+    if said:
         at = Location((folder / "report.toml").as_posix())
         yield Check("outputs", f"{folder.as_posix()} as built", True, said, at, note="warning")
 

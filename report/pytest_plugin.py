@@ -34,7 +34,7 @@ __all__ = [
 
 _LARGEST = 250_000
 """Bytes. A report.toml of ours is smaller; another tool's larger one is left alone."""
-_LIKE_OURS = re.compile(r"^\s*workbook\s*=", re.M)
+_LIKE_OURS = re.compile(r"^\s*workb\w+\s*=", re.M)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -71,11 +71,22 @@ def _is_ours(path: Path) -> bool:
         text = path.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return False
+    if _stands_with_ours(path.parent, text):
+        return True
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError):
         return bool(_LIKE_OURS.search(text)) and ("[measurements" in text or "[parameters" in text)
     return "workbook" in data and ("measurements" in data or "parameters" in data)
+
+
+def _stands_with_ours(folder: Path, text: str) -> bool:
+    """Whether it is meant for loopsheet by what stands beside it, whatever it says itself."""
+    try:
+        method = (folder / "workbook.py").read_bytes()[:_LARGEST]
+    except OSError:
+        method = b""
+    return b"loopsheet" in method or bool(_LIKE_OURS.search(text) and (folder / "measurements.csv").is_file())
 
 
 def _is_copy(path: Path) -> bool:

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -246,3 +247,57 @@ def test_too_few_draws_are_refused(
     assert f"error[LS614]: --draws {draws} tells nothing of an interval of {level} %" in told
     assert f"at least {least}, of which some 10 lie beyond each end" in told
     assert main(["budget", "alpha_mean", campaign, "--draws", "400"]) == 0
+
+
+CLOCK = '''from loopsheet import Method, given, let
+
+
+class Clock(Method, headline="f"):
+    """A clock."""
+
+    f_Sr = given("Hz", "strontium", positive=True)
+    c = given("1", "another number")
+    f = let(f_Sr * 1, "frequency", "Hz")
+    far = let(f_Sr * c, "both", "Hz")
+    none = let(f_Sr - f_Sr * c / c, "nothing", "Hz")
+'''
+
+
+@pytest.fixture
+def clock(tmp_path: Path) -> Path:
+    """A frequency that is known to less than the last bit of a double of it."""
+    (tmp_path / "workbook.py").write_text(CLOCK)
+    stated = '[parameters]\nf_Sr = "429228004229872.99 Hz, u = 0.08 Hz"\nc = "1.1, +-0.1 rect"\n'
+    (tmp_path / "report.toml").write_text(f'workbook = "workbook.py"\n{stated}')
+    return tmp_path
+
+
+def test_an_uncertainty_below_the_last_bit_of_its_value_is_one(
+    clock: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "u = 0.080 Hz, U = 0.16 Hz" in told(capsys, "f", str(clock))
+    assert ", exactly" in told(capsys, "none", str(clock))
+
+
+def test_one_that_stands_alone_has_its_own_distribution_though_it_is_correlated(
+    clock: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = (clock / "report.toml").read_text()
+    rectangular = report.replace("429228004229872.99 Hz, u = 0.08 Hz", "5 Hz, +-0.2 rect")
+    correlated = '[uncertainty.correlation]\n"f_Sr, c" = "0.4"\n'
+    (clock / "report.toml").write_text(rectangular + correlated)
+    alone, both = (told(capsys, name, str(clock)) for name in ("f", "far"))
+    assert "k comes from the rectangular source that dominates" in alone
+    assert "correlated errors are taken as normal" in both
+    assert "k comes from a normal distribution" in both
+
+
+def test_draws_stand_alone_where_there_is_no_coverage_factor(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = shutil.copytree(PAPER.parent / "gum_h1", tmp_path / "gauge")
+    with (folder / "report.toml").open("a") as file:
+        file.write('\n[uncertainty.correlation]\n"l_S, dtheta" = "0.4"\n')
+    said = told(capsys, "l", str(folder), "--draws", "2000")
+    assert "k comes from nothing: correlated sources have finite degrees of freedom" in said
+    assert said.endswith("the law of propagation tells no interval to compare with\n")

@@ -15,9 +15,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from small_report import end_gauge
 
 from loopsheet.report.archive.crate import write as write_crate
 from loopsheet.report.archive.scaffold import new
+from loopsheet.report.build import built
 from loopsheet.report.cli import _parse
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.files.values import read_result
@@ -246,6 +248,14 @@ def new_in_a_used_folder() -> None:
     new(Path("used"), WORKBOOK)
 
 
+def build_over_anothers() -> None:
+    for name in ("one", "other"):
+        Path(name).mkdir()
+        end_gauge(Path(name))
+    built(Study(Path("other")), Path("other/out"), ("json",), False, lambda _: None, lambda _: None)
+    built(Study(Path("one")), Path("other/out"), ("json",), False, lambda _: None, lambda _: None)
+
+
 def result_without_cells() -> None:
     Path("values.json").write_text('{"schema": 1, "title": "t", "workbook": "w"}')
     read_result(Path("values.json"))
@@ -403,6 +413,7 @@ CASES: dict[str, Callable[[], None]] = {
     ),
     "LS626": build_over_notes,
     "LS627": why_of_a_row_left_out,
+    "LS628": build_over_anothers,
 }
 
 

@@ -289,6 +289,13 @@ def test_what_somebody_did_to_an_output_is_a_warning(gauge: Path, run: Run) -> N
     assert said in run("check", "gauge")[1]
     (gauge / "out" / "values.json").unlink()
     assert said in run("check", "gauge")[1]
+    manifest = gauge / "out" / "manifest.json"
+    manifest.write_text("{")
+    said = "gauge/out/manifest.json is damaged, so that nobody can tell whether gauge/out is as it was built"
+    assert said in run("check", "gauge")[1]
+    manifest.unlink()
+    manifest.mkdir()
+    assert said in run("check", "gauge")[1]
 
 
 def test_nothing_is_built_among_the_files_of_others(gauge: Path, run: Run) -> None:

@@ -224,6 +224,19 @@ def test_what_is_ours(text: str, ours: bool, tmp_path: Path) -> None:
     assert _is_ours(tmp_path / "report.toml") is ours
 
 
+@pytest.mark.parametrize("text", ['workbook = "soft_impact"\n[measurement]\n', 'workbok = "x"\n', ""])
+def test_what_is_broken_is_ours_by_what_stands_beside_it(text: str, tmp_path: Path) -> None:
+    found = tmp_path / "report.toml"
+    found.write_text(text)
+    assert not _is_ours(found)
+    (tmp_path / "measurements.csv").write_text("test,v [m/s]\n")
+    assert _is_ours(found) is bool(text)
+    (tmp_path / "workbook.py").write_text("from somewhere import Method\n")
+    assert _is_ours(found) is bool(text)
+    (tmp_path / "workbook.py").write_text("from loopsheet import Method\n")
+    assert _is_ours(found)
+
+
 def test_what_cannot_be_read_is_not_ours(tmp_path: Path) -> None:
     assert not _is_ours(tmp_path)
     assert not _is_ours(tmp_path / "nothing")

@@ -67,7 +67,7 @@ def load(path: Path, form: type[F]) -> F:
     """
     try:
         if not path.is_file():
-            raise Malformed("there is no such file")
+            raise Malformed("it is a folder" if path.is_dir() else "there is no such file")
         if path.stat().st_size > LARGEST:
             raise Malformed(f"it has more than {LARGEST:,} bytes")
         content = path.read_bytes()

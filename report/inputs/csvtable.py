@@ -179,6 +179,8 @@ def _report_widths(
         more = "a comma separates fields: write 2.334, not 2,334" if comma else ""
         halves = (all(each.text.isdigit() for each in both) for both in pairwise(row.fields[1:]))
         empty = len(row.fields) > wanted and not any(field.text for field in row.fields[wanted:])
+        if comma and any(field.text.count("(") > field.text.count(")") for field in row.fields):
+            more = 'what has a comma in it stands in quotes: "r(a, b)"'
         if empty and not (comma and any(halves)):
             more = "a separator too many stands at the end of the row"
         findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)

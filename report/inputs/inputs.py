@@ -100,6 +100,8 @@ class Inputs:
     be printed. Only the referee asks what would come out of them."""
     by_source: bool = False
     """Whether the published values are those of the workbook's own source."""
+    empty: Location | None = None
+    """Where report.toml names a file of published values that holds none."""
     aside: tuple[PublishedValue, ...] = ()
     """Published values that rest on a test that is left out: they are not compared."""
     uncertainty: Stated = field(default_factory=lambda: Stated({}))
@@ -261,6 +263,7 @@ class _Reader:
         self.workbook: Workbook | None = None
         self.free: dict[str, Location] = {}
         self.by_source = False
+        self.empty: Location | None = None
         self.said = Conventions()
         self.taken: dict[str, Taken] = {}
         self.results: dict[str, Result | None] = {}
@@ -305,6 +308,7 @@ class _Reader:
             expected,
             errata,
             self.by_source,
+            self.empty,
             uncertainty=uncertainty,
             published_u=tuple(value for value in published if value.about is not None),
             limits=limits,
@@ -597,6 +601,7 @@ class _Reader:
         if source is None:
             return ()
         values = read_published(source, self.findings, words)
+        self.empty = None if values else at
         modes = self.modes(("published",), list({v.cell: v for v in values})) if "printed" in table else {}
         return tuple(
             replace(value, printed=replace(value.printed, mode=modes.get(value.cell, "rounded")))

@@ -120,7 +120,7 @@ def _why_not(text: str) -> NumberError:
     elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
         suggestion = "write the minus sign as an ordinary hyphen"
     elif not re.search(r"[0-9]", text):
-        suggestion = "in a table the cell of what was not measured is empty"
+        suggestion = "in a table of measurements the cell of what was not measured is empty"
     elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):
         suggestion = "write the digits without spaces or marks between them"
     return NumberError("LS401", text=text, suggestion=suggestion)

@@ -41,8 +41,9 @@ DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squ
 CONSTANTS, WORDS, SCATTERS = "constants", "words", "scatter"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
-CELLS, ROWS, RESULT = "cells", "rows", "result"
-"""The checks of the first kind: every cell has a value, every sum is over all rows, there is a result."""
+CELLS, ROWS, RESULT, PUBLISHED = "cells", "rows", "result", "published"
+"""The checks of the first kind: every cell has a value, every sum is over all rows, there is a result, and
+published.csv, where there is one, holds values."""
 MISFIT = "what is fitted does not describe all {axis}, or their standard uncertainties are understated"
 OVERSTATED = (
     "the standard uncertainties of the {axis} are overstated, or their deviations are not independent"
@@ -64,7 +65,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
     """The names of all checks of a campaign's data, by kind, without computing anything."""
     workbook = inputs.workbook
     return {
-        DATA: [CELLS, ROWS, RESULT],
+        DATA: [CELLS, ROWS, RESULT, *([PUBLISHED] if inputs.empty else [])],
         LIMIT: list(map(_name, margins(sheet))),
         UNCERTAINTY: _stated(sheet, inputs),
         SQUARES: [
@@ -156,6 +157,9 @@ class _Oddities:
         yield self.of_cells()
         yield self.of_rows()
         yield self.of_result()
+        if at := self.inputs.empty:
+            said = "the file of published values holds none, so that nothing is compared"
+            yield Check(DATA, PUBLISHED, True, said, at, note="warning")
         yield from map(self.of_limit, self.report.marks.margins)
         yield from map(self.of_uncertainty, _stated(self.sheet, self.inputs))
         yield from (self.of_squares(each) for each in self.report.workbook.squares if each.asked)

@@ -193,10 +193,14 @@ def staged(
     except OSError as error:
         _remove(made)
         file, place = Path(error.filename or ""), out
-        if stage != out:
-            if error.errno not in EXHAUSTED or not file.is_relative_to(stage):
+        if stage != out and file.is_relative_to(stage):
+            if error.errno not in EXHAUSTED:
                 raise  # not about what we write
             place = out / file.relative_to(stage)
+        elif file.is_relative_to(out):
+            place = file  # of an earlier build, and may not be read
+        elif stage != out:
+            raise
         raise OutputError(diagnose("LS601", text=place.as_posix(), **why(error))) from error
     except BaseException:
         _remove(made)

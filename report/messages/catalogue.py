@@ -483,4 +483,10 @@ CATALOGUE: dict[str, Entry] = {
         "a row that is not left out",
         "with that field empty it takes part again",
     ),
+    "LS628": Entry(
+        "output of another report",
+        "'{text}' holds the report of {known}",
+        "a folder that holds no report of another one",
+        "choose another place with --out",
+    ),
 }

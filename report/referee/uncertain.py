@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["compare_uncertainties"]
 
 NOTHING = "nothing is known of its uncertainty"
+NO_FREEDOM = "nothing is known of the degrees of freedom of its uncertainty"
 FINER = 5
 """A printed end of an interval is drawn to a fifth of half of its last unit."""
 MOST = 10_000_000
@@ -67,7 +68,11 @@ class _Asked:
             return replace(there, name=published.cell, culprit=there.culprit or there)
         number = self.number(about, index, float(published.printed.half_unit) / FINER)
         if not math.isfinite(number):
-            return Cell(published.cell, index, None, Status.DOMAIN, None, NOTHING, there.word)
+            known = about.kind in ("U", "k", "dof") and math.isfinite(
+                self.number(About("u", about.cell), index, 0.0)
+            )
+            why = NO_FREEDOM if known else NOTHING
+            return Cell(published.cell, index, None, Status.DOMAIN, None, why, there.word)
         return Cell(published.cell, index, number, Status.OK, word=there.word)
 
     def number(self, about: About, index: tuple[int, ...], tolerance: float) -> float:

@@ -185,6 +185,8 @@ def convolved(
     """
     sizes = contributions / u
     moving = [n for n, size in enumerate(sizes.tolist()) if size]
+    # One whose partner moves nothing has the distribution that is stated of it.
+    pairs = [each for each in pairs if np.abs(sizes[[*each[:2]]]).min() > ROUNDED]
     mixed = {n for a, b, _ in pairs for n in (a, b) if not sources[n].table}
     ended = [n for n in moving if n not in mixed and (sources[n].law or sources[n].shape in PARTS)]
     doubtful = any(math.isfinite(sources[n].dof) and sources[n].shape is not Shape.STUDENT for n in moving)

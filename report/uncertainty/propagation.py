@@ -58,7 +58,9 @@ MOST_CELLS = 300
 MOST_PASSED = 100_000
 """Influences on the rows of columns that are passed on to other reports: some megabytes of a file."""
 ROUNDED = 2.0**-52
-"""Of a value: a computed one has no uncertainty that is less, for no double tells it from none."""
+"""Of a value: an uncertainty that is less may come from the rounding of a derivative that is 0."""
+ROUNDINGS = 2.0**10
+"""It is at most so many times that, times what share of an input its uncertainty is."""
 MOST_ROWS = 1000
 """Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
 NOTHING = 1e-12
@@ -93,6 +95,8 @@ class Spread:
         self._by = np.array([numbers[name][row] for _, name, row, _ in moves], dtype=np.intp)
         self._u = np.array([u for *_, u in moves])
         self._first = np.searchsorted([n for n, *_ in moves], np.arange(len(self.sources)))
+        sizes = [max(map(self._share, source.moves), default=0.0) for source in self.sources]
+        self._shares = np.array(sizes or [0.0])
         self._known = _known(values)
         self._made: Made = like._made if like else Made.of(values.sheet)
         self._program: Program | None = like._program if like else None
@@ -107,6 +111,12 @@ class Spread:
             weights = np.zeros((size, len(self.sources)))
             np.add.at(weights, (self._by, np.array([n for n, *_ in moves])), self._u)
             self.second = SecondOrder(self._chain, values, self._program, self.sources, root, weights)
+
+    def _share(self, move: tuple[str, int, float]) -> float:
+        """Of what is moved, at most all of it."""
+        name, row, u = move
+        moved = abs(self.values.value[name][row])
+        return min(1.0, abs(u) / moved) if moved else 1.0
 
     def _lies_as(self, other: Spread) -> bool:
         """Whether all rows stand where those of another do, so that the same ways lead between cells."""
@@ -208,13 +218,14 @@ class Spread:
     def _orders(self, cells: Sequence[tuple[str, int]], own: Any) -> tuple[Array, Array]:
         """The variances of cells, of first order and of second; this is NaN where it is not known.
 
-        A computed value has none less than the square of its rounding: derivatives that are 0 come to that.
+        A computed value has none less than what the rounding of derivatives that are 0 comes to.
         """
         first, second = self._variance(own), self._more(cells, own)
         computed = [not isinstance(self.values.sheet[name].rule, Given) for name, _ in cells]
         values = np.array([self.values.value[name][row] for name, row in cells])
+        noise = ROUNDED * np.minimum(1.0, ROUNDINGS * _largest(own != 0, self._shares))
         with np.errstate(all="ignore"):
-            little = first + np.nan_to_num(second) <= np.square(ROUNDED * np.where(computed, values, 0.0))
+            little = first + np.nan_to_num(second) <= np.square(noise * np.where(computed, values, 0.0))
         first = np.where(little, 0.0, first)
         first[little & self._hidden(cells)] = np.nan
         return first, np.where(little, 0.0 * second, second)
@@ -388,6 +399,13 @@ def _known(values: Values) -> set[str]:
         for column in sheet.columns
         if generated.isdisjoint(each.name for each in (column, *sheet.ancestors(column)))
     }
+
+
+def _largest(where: Any, sizes: Array) -> Array:
+    """The largest size where a mask (rows, sizes), dense or sparse, is true in a row; else 0."""
+    if isinstance(where, np.ndarray):
+        return np.asarray(np.max(np.where(where, sizes, 0.0), axis=1))
+    return np.asarray(where.multiply(sizes).max(axis=1).toarray()).ravel()
 
 
 def _moved(own: Any, n: int) -> Sequence[tuple[int, float]]:

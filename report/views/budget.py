@@ -262,6 +262,9 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         yield "its ends are not known to the second digit of u: more draws would tell"
     if not budget.is_known:
         return  # of a sheet that is too large: there is nothing to compare with
+    if not math.isfinite(budget.factor):
+        yield "the law of propagation tells no interval to compare with"
+        return
     far, (low, high) = wide(max(drawn.differences)), drawn.symmetric
     if drawn.validates:
         yield f"the law of propagation gives the same interval within {far}{unit}"

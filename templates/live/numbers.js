@@ -47,13 +47,13 @@ const halfUp = (n, d) => (2n * n + d) / (2n * d), halfDown = (n, d) => (2n * n +
 
 // n/d with so many decimals (fewer than none: rounded to tens), a half up; or to whole numbers otherwise.
 function fixedExact({ n, d }, places, whole = halfUp) {
-  const scaled = places >= 0 ? whole(magnitude(n) * tenTo(places), d) : whole(magnitude(n), d * tenTo(-places));
-  let digits = places >= 0 ? scaled.toString() : (scaled * tenTo(-places)).toString();
-  if (places > 0) {
-    digits = digits.padStart(places + 1, "0");
-    digits = `${digits.slice(0, -places)}.${digits.slice(-places)}`;
-  }
-  return (n < 0n ? "-" : "") + digits;
+  return pointed(places < 0 ? whole(magnitude(n), d * tenTo(-places)) : whole(magnitude(n) * tenTo(places), d), places, n < 0n);
+}
+
+// A whole number of such decimals, or tens, as text.
+function pointed(n, places, negative) {
+  const behind = Math.max(places, 0), text = String(n * tenTo(behind - places)).padStart(behind + 1, "0");
+  return (negative ? "-" : "") + (behind ? `${text.slice(0, -behind)}.${text.slice(-behind)}` : text);
 }
 
 // --- digits of a double ----------------------------------------------------------------------------------
@@ -66,13 +66,12 @@ function kept(x, digits = 15) {
 }
 
 // Rounded to so many of them (none: whether they are half of one more), as a whole number.
-const head = (all, digits) => BigInt(all.slice(0, Math.max(0, digits))) + BigInt(digits >= 0 && all[digits] >= "5");
+const head = (all, digits) => BigInt(all.slice(0, Math.max(0, digits))) + BigInt(all[digits] >= "5");
 
 // With so many decimals; fewer than none: rounded to tens.
 function fixed(x, places) {
-  const { all, first } = kept(x, order(x) + 1 + places), digits = first + 1 + places, idle = Math.max(digits - all.length, 0) + Math.max(-places, 0);
-  const text = String(head(all, digits) * tenTo(idle)).padStart(Math.max(places, 0) + 1, "0"), point = text.length - Math.max(places, 0);
-  return `${x < 0 ? "-" : ""}${text.slice(0, point)}${places > 0 ? `.${text.slice(point)}` : ""}`;
+  const { all, first } = kept(x, order(x) + 1 + places), digits = first + 1 + places;
+  return pointed(head(all, digits) * tenTo(Math.max(digits - all.length, 0)), places, x < 0);
 }
 
 // The power of ten of the first digit of a number; 0 for zero.
@@ -209,9 +208,6 @@ function decimalsOf(text) {
   return (mantissa.split(".")[1] ?? "").length - Number(power);
 }
 
-// Significant digits as printed: zeros count unless they lead.
-const digitsOf = (text) => text.replace(/e.*|\D/gi, "").replace(/^0+/, "").length;
-
 // A printed number with so many units of its last digit more; what is no number stays.
 function stepped(text, by) {
   if (!NUMBER.test(text)) return text;
@@ -226,13 +222,12 @@ function nearExact(x) {
 }
 
 // A double beside a printed number: printed as that is, how far off in units of its last digit, the same? Its unit is n/d
-// in SI, its zero zero/d. A half may have gone either way.
+// in SI, its zero zero/d. A half may have gone either way; of fifteen printed digits and more, all of the double's count.
 function beside(value, text, [n, d, zero = 0n], truncated) {
   const exact = ofDouble(value), places = decimalsOf(text), printed = readExact(text);
-  const inUnit = { n: exact.n * d - zero * exact.d, d: exact.d * n }, near = digitsOf(text) < 15 || truncated ? nearExact(inUnit) : inUnit;
-  const other = (whole) => fixedExact(near, places, whole), isPrinted = (again) => readExact(again).n * printed.d === printed.n * readExact(again).d;
-  const ways = truncated ? [other((n, d) => n / d)] : [other(halfUp), other(halfDown)];
-  const again = ways.find(isPrinted) ?? ways[0];
+  const inUnit = { n: exact.n * d - zero * exact.d, d: exact.d * n }, near = truncated || text.replace(/^[-+.0]+|e.*|\D/gi, "").length < 15 ? nearExact(inUnit) : inUnit;
+  const isPrinted = (again) => readExact(again).n === printed.n; // with as many decimals
+  const ways = (truncated ? [(n, d) => n / d] : [halfUp, halfDown]).map((whole) => fixedExact(near, places, whole)), again = ways.find(isPrinted) ?? ways[0];
   const off = { n: inUnit.n * printed.d - printed.n * inUnit.d, d: inUnit.d * printed.d };
   const distance = places >= 0 ? { n: off.n * tenTo(places), d: off.d } : { n: off.n, d: off.d * tenTo(-places) };
   return { again, distance: toDouble(distance), same: isPrinted(again) };

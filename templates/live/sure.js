@@ -97,7 +97,7 @@ class Sure {
 
   // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
   factor(parts, variances, freedom, u) {
-    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => [a, b]));
+    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => (parts[a] && parts[b] ? [a, b] : [])));
     const ended = errors.map(({ shape }, n) => Boolean(parts[n] && !mixed.has(n) && ENDED[shape]));
     if (!freedom || !ended.includes(true) || errors.some(({ dof, shape }, n) => parts[n] && dof && shape !== "t")) return studentFactor(freedom);
     // All others are one error, as they are where nothing else is.
