@@ -52,7 +52,7 @@ function fixedExact({ n, d }, places, whole = halfUp) {
 
 // A whole number of such decimals, or tens, as text.
 function pointed(n, places, negative) {
-  const behind = Math.max(places, 0), text = String(n * tenTo(behind - places)).padStart(behind + 1, "0");
+  const behind = places < 0 ? 0 : places, text = String(n * tenTo(behind - places)).padStart(behind + 1, "0");
   return (negative ? "-" : "") + (behind ? `${text.slice(0, -behind)}.${text.slice(-behind)}` : text);
 }
 
@@ -66,7 +66,7 @@ function kept(x, digits = 15) {
 }
 
 // Rounded to so many of them (none: whether they are half of one more), as a whole number.
-const head = (all, digits) => BigInt(all.slice(0, Math.max(0, digits))) + BigInt(all[digits] >= "5");
+const head = (all, digits) => BigInt(all.slice(0, digits < 0 ? 0 : digits)) + BigInt(all[digits] >= "5");
 
 // With so many decimals; fewer than none: rounded to tens.
 function fixed(x, places) {
