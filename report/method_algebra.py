@@ -109,7 +109,7 @@ def claimed(
     members = tuple(_typed(side).subs(body.axis.index, row) for side in (left, right))
     conditions = tuple(dict.fromkeys(each for premise, _ in found for each in premise.conditions))
     equation = Equation(
-        label or body.free_number(),
+        body.free_number(f"'{meaning}'", label),
         members,
         because or "it follows by algebra",
         title=meaning,

@@ -28,6 +28,7 @@ from .method_lines import (
     PointsLine,
     TakenLine,
     UnknownLine,
+    checked_label,
     exact,
     in_si,
     none_of,
@@ -305,7 +306,7 @@ class MethodBody(dict[str, Any]):
         """Say what a column is where a parameter that it names, or that it is itself, is left out."""
         if not isinstance(otherwise, Equation):
             own = exact(otherwise), "where it is left out", Kind.DEFINITION, column.meaning
-            otherwise = Equation(self.free_number(), (column.cell, own[0]), *own[1:])
+            otherwise = Equation(self.free_number(column.name), (column.cell, own[0]), *own[1:])
             self.entries.append(otherwise)
         of = otherwise.sides[0]
         rule = Formula(self.places.put(otherwise, {of: column.cell}))
@@ -458,10 +459,8 @@ class MethodBody(dict[str, Any]):
         self.axes.append(axis)
         self._refuse_name_of_rows()
         column = Column(name, axis, Given(), meaning=said.meaning, **unit_in_si(size), **said.column)
-        value = spaced(low, high, step, last)
-        equation = Equation(
-            said.label or self.free_number(), (column.cell, value), "points", Kind.DEFINITION, said.meaning
-        )
+        sides, label = (column.cell, spaced(low, high, step, last)), self.free_number(name, said.label)
+        equation = Equation(label, sides, "points", Kind.DEFINITION, said.meaning)
         self.entries.append(equation)
         return self._as_difference(replace(column, rule=Formula(equation)), said_so=True)
 
@@ -511,12 +510,12 @@ class MethodBody(dict[str, Any]):
             self.instead(column, said.otherwise)
         return column
 
-    def free_number(self) -> str:
-        """The next number of an equation."""
-        every = Ledger((*(self.ledger.entries if self.ledger else ()), *self.entries)).equations()
+    def free_number(self, name: str, label: object = "") -> str:
+        """What an equation is called, as no other is; without a label the next number."""
+        every = [*Ledger((*(self.ledger.entries if self.ledger else ()), *self.entries)).equations()]
         taken = dict.fromkeys(equation.number for equation in every if not equation.own)
         numbers = map("({})".format, itertools.count(len(taken) + 1))
-        return next(number for number in numbers if number not in taken)
+        return checked_label(name, label, every) if label else next(n for n in numbers if n not in taken)
 
     def _fitted(self, name: str, said: FitLine) -> DeclaredFit:
         """The columns, equations and figures of a fit; what a name of the body stands for is told of it."""
@@ -539,7 +538,7 @@ class MethodBody(dict[str, Any]):
                 raise SheetError(f"{name}: {formula} is of rows in groups, which no fit takes", name)
         found = DeclaredFit(
             name, rows, self.columns, said.observed, said.model, sought, said.u,
-            said.label or self.free_number(), self.own, said.of,
+            self.free_number(name, said.label), self.own, said.of,
         )  # fmt: skip
         for column in found.columns:
             if column.name in self.columns:
@@ -611,7 +610,7 @@ class MethodBody(dict[str, Any]):
         column = Column(name, axis, Given(), meaning=said.meaning, **{**unit, **said.column})
         sides = said.sides if said.ends else (column.cell, *said.sides)
         kind = Kind.ASSUMPTION if said.ends else Kind.DEFINITION
-        equation = Equation(said.label or self.free_number(), sides, said.because, kind, said.meaning)
+        equation = Equation(self.free_number(name, said.label), sides, said.because, kind, said.meaning)
         self.entries.append(equation)
         if said.ends:
             if column.symbol not in named:

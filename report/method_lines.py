@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from sympy import Expr, Float, Function, Rational, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 from sympy.core.relational import Relational
 
+from ..derivations.equation import Equation
 from ..derivations.reductions import Member
 from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
 from ..derivations.vocabulary import Quantity, amiss
@@ -26,6 +27,7 @@ __all__ = [
     "PointsLine",
     "TakenLine",
     "UnknownLine",
+    "checked_label",
     "exact",
     "in_si",
     "none_of",
@@ -247,3 +249,12 @@ def exact(formula: Any) -> Expr:
                 break
     found: Expr = formula.xreplace(typed)
     return found
+
+
+def checked_label(name: str, label: object, others: Iterable[Equation]) -> str:
+    """What a method calls an equation; refused if it is no text of one line, or another one is called so."""
+    if not isinstance(label, str) or not label.isprintable():
+        raise SheetError(f"{name}: the label of an equation is a text of one line in quotes, not {label!r}")
+    if any(other.label == label for other in others):
+        raise SheetError(f"{name}: another equation is called {label} already; a label has exactly one")
+    return label

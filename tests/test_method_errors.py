@@ -55,6 +55,16 @@ f = let(x**2, "area", "mm")
         {0: "'positiv'", 1: "'zz' is not defined", 2: "in quotes, not 3", 3: "CODATA has no",
          5: "single number", 6: "one kind of rows", 10: "but the formula gives"},
     ),
+    "labels": (
+        """\
+a = let(2 * x, "twice", label="(A)")
+b = let(3 * x, "thrice", label="(A)")
+c = let(4 * x, "four times", label=7)
+d = let(5 * x, "five times", label="(B)\\n(C)")
+claim(a / 2, x, "it is half of that", label="(A)")
+""",
+        {1: "b: another equation is called (A)", 2: "in quotes, not 7", 3: "of one line", 4: "(A) already"},
+    ),
     "a fit and what it has": (
         """\
 a = unknown("where it begins", "mm")

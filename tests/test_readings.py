@@ -119,9 +119,9 @@ def test_draws_of_readings_have_their_degrees_of_freedom(made: Made) -> None:
     ("section", "code", "said"),
     [
         ('paired = "V"', "LS205", "a list of columns"),
-        ('paired = ["V"]', "LS505", "two or more of V, I or phi"),
-        ('paired = ["V", "V"]', "LS505", "'V'"),
-        ('paired = ["V", "U"]', "LS505", "'U'"),
+        ('paired = ["V"]', "LS434", "two or more of V, I or phi"),
+        ('paired = ["V", "V"]', "LS434", "'V' is named twice"),
+        ('paired = ["V", "U"]', "LS434", "'U' is no measured column with two rows or more"),
         ('paired = ["V", "I"]\nI = "u = 0.1"', "LS433", "uncertainty of I is stated twice"),
         (
             'paired = ["V", "I"]\nphi = "u = 0.1"\n[uncertainty.correlation]\n"V, phi" = "0.1"',

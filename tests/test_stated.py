@@ -300,6 +300,7 @@ def test_what_is_shared(read: Read) -> None:
             "groups",
         ),
         ('[uncertainty.correlation]\n"v, w" = "0.1"', "LS505", '"v, w"'),
+        ('[uncertainty.correlation]\n"v, v" = "0.1"', "LS434", '"v, v"'),
         ('[uncertainty.correlation]\n"v, e" = "1.1"', "LS434", '"1.1"'),
         ('[uncertainty.correlation]\n"v, e" = "0.9"\n"e, v" = "0.3"', "LS433", '"e, v"'),
         ('[uncertainty.correlation]\n"v, ball_mass" = "0.1"', "LS434", '"0.1"'),

@@ -48,9 +48,14 @@ def read_paired(
     columns = [name for name in columns if name in beside or not beside]
     wrong = [name for n, name in enumerate(written) if name not in columns or name in written[:n]]
     if wrong or len(written) < 2:
-        known = f"two or more of {listing(columns)}, each once, with two rows or more"
-        text, at = wrong[0] if wrong else ", ".join(written), tables.toml.value(*path)
-        tables.findings.add("LS505", at, text=text, known=known, suggestion=suggest(text, columns))
+        reason = f"paired readings are two or more of {listing(columns)}"
+        if not columns:
+            reason = "paired readings are of two columns or more with two rows or more, and there are none"
+        elif wrong:
+            odd = "is named twice" if wrong[0] in columns else "is no measured column with two rows or more"
+            reason = f"paired readings: '{wrong[0]}' {odd}"
+        hint = suggest(wrong[0], columns) if wrong and wrong[0] not in columns else ""
+        tables.findings.add("LS434", tables.toml.value(*path), reason=reason, suggestion=hint)
         return ()
     if gaps := [name for name in written if None in numbers[name]]:
         reason = f"paired readings were taken together, and {gaps[0]} has not one in each row"

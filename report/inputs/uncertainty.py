@@ -349,9 +349,14 @@ class _Reader:
             pair = tuple(re.split(r"\s*,\s*", key.strip()))
             if text is None:
                 continue
-            if len(pair) != 2 or pair[0] == pair[1] or not all(name in self.numbers for name in pair):
+            if len(pair) == 2 and pair[0] == pair[1] and pair[0] in self.numbers:
+                reason = f"{pair[0]} is correlated with itself anyway: name two columns"
+                self.findings.add("LS434", self.toml.key(*path), reason=reason, suggestion="")
+                continue
+            if wrong := [name for name in pair if name not in self.numbers] or pair * (len(pair) != 2):
                 known = f"two of {listing(self.numbers)} with a comma between them"
-                self.findings.add("LS505", self.toml.key(*path), text=key, known=known, suggestion="")
+                text = wrong[0] if len(pair) == 2 else key
+                self.findings.add("LS505", self.toml.key(*path), text=text, known=known, suggestion="")
                 continue
             if frozenset(pair) in seen:
                 both = " and ".join(pair)
