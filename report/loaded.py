@@ -160,6 +160,10 @@ class Loaded(Mapping[str, Estimates]):
         KeyError
             With the nearest name and all there are.
         """
+        if not isinstance(name, str):
+            raise KeyError(
+                f"a quantity is asked for by its name, ['{next(iter(self), 'x')}'], not by {name!r}"
+            )
         report = self._report
         own, row = parts(name) or (name, "")
         if row and own in report.sheet:

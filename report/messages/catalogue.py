@@ -136,7 +136,7 @@ CATALOGUE: dict[str, Entry] = {
         "column without unit",
         "the column '{text}' does not name its unit",
         "a unit in square brackets, that converts to {unit}",
-        "write '{example}'",
+        "write the unit of its numbers behind it, such as '{example}'",
     ),
     "LS305": Entry(
         "malformed header",

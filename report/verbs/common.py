@@ -235,5 +235,6 @@ def find(report: Report, address: str) -> tuple[Column, list[tuple[int, ...]]]:
         known = listing([index_text(label) for label in labels])
         if words:
             known += f"; or {listing(dict.fromkeys(words.values()))}"
-        raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=""))
+        alone = "" if column.axis else f"{name} is a single number: '{name}' names it"
+        raise UsageError(diagnose("LS604", kind=f"row of {name}", text=index, known=known, suggestion=alone))
     return column, wanted

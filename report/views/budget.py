@@ -158,7 +158,7 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     )
 
 
-def notes(report: Report, budget: Budget) -> Iterator[str]:
+def notes(report: Report, budget: Budget, draws: str = "--draws") -> Iterator[str]:
     """What there is to say of a budget besides its numbers, a sentence each."""
     alike: dict[tuple[str, ...], list[str]] = {}
     columns = {each.source.name: each.source.moves[0][0] for each in budget.contributions}
@@ -176,13 +176,13 @@ def notes(report: Report, budget: Budget) -> Iterator[str]:
             off = law.mean * (each.source.u or 0.0)
             (unit, _), far = _unit(report, name), report.sure(name, abs(off)).text
             there = f"{far}{unit} {'above' if off > 0 else 'below'} the given number"
-            yield f"the expectation of {each.source.name} lies {there}: --draws counts it"
+            yield f"the expectation of {each.source.name} lies {there}: {draws} counts it"
     if budget.unlooked and budget.is_known:
         said = f"terms of second order were not looked at: {budget.unlooked}"
-        yield f"{said}; {budget.hold}, --draws tells more"
+        yield f"{said}; {budget.hold}, {draws} tells more"
     if budget.second:
         share = percent(budget.second / budget.u**2)
-        yield f"terms of second order make {share} of the variance: {budget.hold}, --draws tells more"
+        yield f"terms of second order make {share} of the variance: {budget.hold}, {draws} tells more"
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"

@@ -45,7 +45,7 @@ def _curve(plan: Planned) -> str:
 
 def _said(plan: Planned) -> Iterator[str]:
     """What there is to tell of it, a sentence each."""
-    yield from notes(plan.report, plan.budget)
+    yield from notes(plan.report, plan.budget, "'budget --draws' of such a campaign")
     if plan.best is not None:
         yield _best(plan)
     if plan.needed is not None:
