@@ -170,7 +170,7 @@ def test_only_what_is_of_second_order_or_an_uncertainty_keeps_its_digits(
 def test_published_values_keep_their_digits(known: dict[str, Any]) -> None:
     (tables, *_) = known["published"]
     assert tables["id"] == "published-Table-2"
-    assert tables["rows"][0] == ["alpha", "1-2", "1.234", ["1", "1"], False, "1.258", ""]
+    assert tables["rows"][0] == ["alpha", "1-2", "1.234", 0, 0, "1.258", ""]
 
 
 def test_a_unit_keeps_its_closing_parenthesis() -> None:

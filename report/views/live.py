@@ -132,8 +132,8 @@ def data(report: Report, document: Material) -> str:
                         pair.comparison.published.cell,
                         index_text(pair.comparison.published.index),
                         pair.printed.text,
-                        _size(pair.printed),
-                        pair.printed.mode == "truncated",
+                        _size(pair.printed) if pair.printed.unit != "1" else 0,
+                        int(pair.printed.mode == "truncated"),
                         *pair.comparison.known,
                     ]
                     for pair in group.pairs

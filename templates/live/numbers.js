@@ -68,8 +68,9 @@ function kept(x, digits = 15) {
 // Rounded to so many of them (none: whether they are half of one more), as a whole number.
 const head = (all, digits) => BigInt(all.slice(0, digits < 0 ? 0 : digits)) + BigInt(all[digits] >= "5");
 
-// With so many decimals; fewer than none: rounded to tens.
+// With so many decimals; fewer than none: rounded to tens. Where the next digit is no 5, no half is near.
 function fixed(x, places) {
+  if (places >= 0 && places < 100 && Math.abs(x) < 1e21 && !x.toFixed(places + 1).endsWith("5")) return x.toFixed(places);
   const { all, first } = kept(x, order(x) + 1 + places), digits = first + 1 + places;
   return pointed(head(all, digits) * tenTo(Math.max(digits - all.length, 0)), places, x < 0);
 }

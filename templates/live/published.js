@@ -15,7 +15,7 @@ function compared(look, [cell, index, text, scale, truncated, known, other]) {
     const finding = known === null ? LIVE.findings.unexpected : findingOf(false, again, known, other);
     return { again, verdict: "no value", finding };
   }
-  const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, scale.map(BigInt), truncated);
+  const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, (scale || [1, 1]).map(BigInt), truncated);
   return { again, distance, verdict: same ? "same" : "differs", finding: findingOf(same, again, known, other) };
 }
 
