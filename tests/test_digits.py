@@ -7,7 +7,7 @@ import re
 import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
+from decimal import ROUND_HALF_UP, Context, Decimal, localcontext
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
@@ -145,8 +145,8 @@ def as_a_spreadsheet(value: float, form: str) -> str:
             form = some.partition("]")[2]
     point, scientific, _ = form.partition("E")
     decimals = len(point.partition(".")[2])
-    with localcontext(Context(prec=60, rounding=ROUND_HALF_EVEN)):
-        text = f"{Decimal(value):.{decimals}{'e' if scientific else 'f'}}"
+    with localcontext(Context(prec=60, rounding=ROUND_HALF_UP)):  # 1.75955 as 0.0000 is 1.7596 in all of them
+        text = f"{Decimal(f'{value:.14e}'):.{decimals}{'e' if scientific else 'f'}}"
     return re.sub(r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", text)
 
 
