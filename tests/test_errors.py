@@ -47,7 +47,7 @@ from loopsheet.report.messages.errors import (
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.study import Study
 from loopsheet.report.verbs import check
-from loopsheet.report.verbs.build import out_of
+from loopsheet.report.verbs.build import out_of, summary
 from loopsheet.report.verbs.common import find
 from loopsheet.report.views.validation import TITLE
 from loopsheet.report.workbook import Measured, Parameter, Workbook
@@ -252,8 +252,8 @@ def build_over_anothers() -> None:
     for name in ("one", "other"):
         Path(name).mkdir()
         end_gauge(Path(name))
-    built(Study(Path("other")), Path("other/out"), ("json",), False, lambda _: None, lambda _: None)
-    built(Study(Path("one")), Path("other/out"), ("json",), False, lambda _: None, lambda _: None)
+    built(Study(Path("other")), Path("other/out"), ("json",), False, lambda _: None, summary)
+    built(Study(Path("one")), Path("other/out"), ("json",), False, lambda _: None, summary)
 
 
 def result_without_cells() -> None:
