@@ -179,7 +179,8 @@ def _of_another(study: Study, out: Path) -> Path | None:
 
 def _refuse_anothers(study: Study, out: Path) -> None:
     """Refuse to put a report in the place of that of another folder, which is there as it was built."""
-    other, before = _of_another(study, out), manifest_of(out)
+    other = _of_another(study, out)
+    before = manifest_of(out) if other else None
     if other and before and holds(other, before.inputs):
         raise UsageError(diagnose("LS628", text=out.as_posix(), known=told(other)))
 

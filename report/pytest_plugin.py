@@ -71,8 +71,10 @@ def _is_ours(path: Path) -> bool:
         text = path.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return False
-    if _stands_with_ours(path.parent, text):
-        return True
+    return _says_ours(text) or _stands_with_ours(path.parent, text)
+
+
+def _says_ours(text: str) -> bool:
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError):

@@ -353,7 +353,8 @@ class _Reader:
                 reason = f"{pair[0]} is correlated with itself anyway: name two columns"
                 self.findings.add("LS434", self.toml.key(*path), reason=reason, suggestion="")
                 continue
-            if wrong := [name for name in pair if name not in self.numbers] or pair * (len(pair) != 2):
+            wrong = [name for name in pair if name not in self.numbers]
+            if len(pair) != 2 or wrong:
                 known = f"two of {listing(self.numbers)} with a comma between them"
                 text = wrong[0] if len(pair) == 2 else key
                 self.findings.add("LS505", self.toml.key(*path), text=text, known=known, suggestion="")

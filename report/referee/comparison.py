@@ -58,13 +58,17 @@ def print_as(value: float, like: Printed) -> str:
     '0.12'
     '0.13'
     """
-    sign, places = "-" if like.of(Fraction(value)) < 0 else "", like.decimals
-    texts = [sign + _written(abs(digits), places) for digits in _digits(value, like)]
+    exact, places = like.of(Fraction(value)), like.decimals
+    sign = "-" if exact < 0 else ""
+    texts = [sign + _written(abs(digits), places) for digits in _digits(value, exact, like)]
     return next((text for text in texts if Fraction(text) == Fraction(like.text)), texts[0])
 
 
-def _digits(value: float, like: Printed) -> Iterator[int]:
-    """What a value is as a number of the last printed digits; another, too, where both would be right."""
+def _digits(value: float, exact: Fraction, like: Printed) -> Iterator[int]:
+    """What a value is as a number of the last printed digits; another, too, where both would be right.
+
+    `exact`: the value as a number of the printed unit.
+    """
     unit = Fraction(10) ** -like.decimals
     if like.mode == "rounded" and like.digits >= DIGITS:
         # It stands for all that rounds to it, of which one may print so.
@@ -72,7 +76,6 @@ def _digits(value: float, like: Printed) -> Iterator[int]:
             yield round(like.of(Fraction(value) + way * Fraction(math.ulp(value)) / 2) / unit)
         return
     # A double is a little less or more than the decimal number it stands for: 29.7 is not cut to 29.6.
-    exact = like.of(Fraction(value))
     near = Fraction(Context(prec=DIGITS).divide(Decimal(exact.numerator), Decimal(exact.denominator))) / unit
     if like.mode == "truncated":
         yield math.trunc(near)
