@@ -109,3 +109,12 @@ def test_only_a_page_with_drawings_has_what_draws() -> None:
     whole, without = (live.script("{}", "", drawings) for drawings in (True, False))
     assert DRAWS in whole
     assert not any((SHORT / name).read_text(encoding="utf-8") in without for name in live.DRAWING)
+
+
+def test_no_name_stands_outermost_twice_in_the_page() -> None:
+    """Its scripts are one function: of two of one name the latter is called by all, and nobody says so."""
+    named = re.compile(r"(?m)^(?:const|let|function\*?|class) (\w+)")
+    texts = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in live.SCRIPTS]
+    names = [name for text in texts for name in named.findall(text)]
+    assert len(names) > 200
+    assert not {name for name in names if names.count(name) > 1}

@@ -367,6 +367,8 @@ class Uncertainties:
     """Of shape (rows,), by column; the variance that terms of second order make; 0 if they do not count."""
     misfits: Mapping[str, Misfit] = field(default_factory=dict)
     """Of the workbook's curves, by the cells of their sums of squares; those that are known."""
+    rough: Mapping[str, bool] = field(default_factory=dict)
+    """Columns of which derivatives jump: where rows change places (true), or at corners of a function."""
 
     @property
     def bent(self) -> dict[str, NDArray[np.bool_]]:

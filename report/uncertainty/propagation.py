@@ -463,4 +463,5 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
         {name: second for name, (_, second) in variances.items()},
         {each.name: found for each in inputs.workbook.curves if (found := spread.misfit(each))},
+        spread.second.rough if spread.second else {},
     )

@@ -105,6 +105,8 @@ class SecondOrder:
             if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
         }
         """What rests on a function that has a corner: near it, derivatives jump."""
+        self.rough = dict.fromkeys(self.cornered, False) | dict.fromkeys(self.jumping, True)
+        """Both, and whether it is the order of rows."""
         number, some = len(sources), np.random.default_rng(1).standard_normal((len(sources), 1))
         sides = np.hstack([np.eye(number), -np.eye(number)])
         steps = np.hstack([sides, FAR / STEP * sides, some @ np.array([[1.0, 2.0, 4.0]])])

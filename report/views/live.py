@@ -37,16 +37,15 @@ from .writer import TEMPLATES
 
 __all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
 
-ALONE = "random.js"
+ALONE = ("random.js", "sensitivities.js", "second_order.js")
 """What a worker runs behind the program, and the page, too."""
 
 SCRIPTS = (
-    ALONE,
+    *ALONE,
     "page.js",
     "numbers.js",
     "inputs.js",
     "trace.js",
-    "sensitivities.js",
     "coverage.js",
     "sure.js",
     "cells.js",
@@ -91,11 +90,11 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
     ValueError
         The text would end the element that it stands in.
     """
-    names = (name for name in SCRIPTS[1:] if drawings or name not in DRAWING)
-    alone, *own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in (ALONE, *names)]
+    names = [name for name in SCRIPTS if drawings or name not in DRAWING]
+    own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in names]
+    own.insert(len(ALONE), "if(!self.document)return;\n")
     short: str = kept("program of the page", [program], lambda: short_cells(short_script(program)))
-    until = f"{alone}if(!self.document)return;\n"
-    text = "".join(["(()=>{", runtime, f"let PROGRAM={short};\n", until, *own, "})();\n"])
+    text = "".join(["(()=>{", runtime, f"let PROGRAM={short};\n", *own, "})();\n"])
     if re.search(r"</script|<!--|<script", text, re.IGNORECASE):
         raise ValueError("the script of the page must not hold the end of its element")
     return text
@@ -231,6 +230,8 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     entry |= digits(report, column)
     if doubt := report.uncertain().advice.get(column.name):
         entry["doubt"] = doubt
+    if (jumps := report.uncertain().rough.get(column.name)) is not None:
+        entry["rough"] = 1 + jumps
     if column.spare or report.told_of(column) != column.name:
         entry["spare"] = 1
     if head.sources != (column.source,):

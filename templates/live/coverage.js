@@ -9,6 +9,7 @@ const ENDED = {
   rectangular: [Math.sqrt(3), (phase) => Math.sin(phase) / phase], triangular: [Math.sqrt(6), (phase) => (Math.sin(phase / 2) / (phase / 2)) ** 2],
   arcsine: [Math.SQRT2, bessel],
 };
+const DOMINANT = 0.3; // of one error all others together are so little beside it (EA-4/02, S9.14)
 const WAVES = 8000; // at most
 const LITTLE = 1e-10; // of an average
 const WRAPPED = 3e-6; // of a t distribution may be taken for what is within

@@ -106,7 +106,7 @@ function show() {
   // As issued, the page holds the numbers of another engine: none of them is left between ours.
   if (edited) writePage(page.look, wasEdited ? before : null);
   else restore();
-  for (const word of page.stale) word.hidden = !edited;
+  tellStale();
   keepStates(edited);
   drawSoon();
   writeToolbar(edited);

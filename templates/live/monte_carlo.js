@@ -9,24 +9,31 @@ const carlo = { worker: null, timer: 0, look: null, found: {}, refused: false };
 
 const draws = (look, name, row) => LIVE.shared && row >= 0 && look.trace.isOk(name, row) && !look.sure.lacking(name, row) && axisNamed(look.trace.declared[name].axis)?.kind !== "repeat" && !LIVE.columns[name].given;
 
-// Every cell that is to be drawn: after an edit the results, and the one in the bar.
+// Every cell that is to be drawn: after an edit the results, and the one in the bar. Of all results it is asked whether
+// second order counts.
 function cellsToDraw(look) {
-  const results = isEdited() && page.panel ? LIVE.headline.slice(0, MOST_DRAWN).map(([name, index]) => [name, look.trace.row(name, index)]) : [];
-  return [...results, [bar.name, look.trace.row(bar.name, bar.index)]].filter(([name, row]) => draws(look, name, row));
+  const results = isEdited() ? LIVE.headline.map(([name, index]) => [name, look.trace.row(name, index)]) : [], own = [bar.name, look.trace.row(bar.name, bar.index)];
+  const some = (cells) => cells.filter(([name, row]) => draws(look, name, row));
+  return { looked: some([...results, own]).filter((cell) => !(cell in look.sure.more)), cells: some([...(page.panel ? results.slice(0, MOST_DRAWN) : []), own]).filter((cell) => !carlo.found[cell]) };
 }
 
 // Draws what was not drawn yet, soon; what was begun for another state ends.
 function drawSoon() {
-  const { look } = page, cells = cellsToDraw(look);
+  const { look } = page;
   if (carlo.look !== look) Object.assign(carlo, { look, found: {} });
   clearTimeout(carlo.timer);
   carlo.worker?.terminate();
-  if (carlo.refused || cells.every((cell) => carlo.found[cell])) return;
-  carlo.timer = setTimeout(() => drawNow(look, cells), PAUSE);
+  ROOT.dataset.draws = "due";
+  if (LIVE.shared && !carlo.refused) carlo.timer = setTimeout(() => drawNow(look), PAUSE);
 }
 
-function drawNow(look, cells) {
-  const names = cells.map(([name]) => [name, ...look.trace.ancestors(name)]);
+function drawNow(look) {
+  const { looked, cells } = cellsToDraw(look);
+  if (!looked.length && !cells.length) {
+    ROOT.dataset.draws = "done";
+    return;
+  }
+  const names = (of) => of.map(([name]) => [name, ...look.trace.ancestors(name)]);
   const { labels, data } = look.trace.sheet, { errors, pairs } = look.sure, refuse = () => {
     carlo.refused = true;
     tellDraws(look);
@@ -38,12 +45,15 @@ function drawNow(look, cells) {
     return;
   }
   carlo.worker.onerror = refuse;
-  carlo.worker.onmessage = ({ data }) => {
-    carlo.worker.terminate();
-    cells.forEach((cell, n) => (carlo.found[cell] = toldBy(data[n])));
-    tellDraws(look);
+  carlo.worker.onmessage = ({ data: { more, found } }) => {
+    if (found) carlo.worker.terminate();
+    looked.forEach((cell, n) => more && look.sure.learn(cell, more[n]));
+    cells.forEach((cell, n) => found && (carlo.found[cell] = toldBy(found[n])));
+    tellDraws(look, more);
+    if (found) ROOT.dataset.draws = "done";
   };
-  carlo.worker.postMessage({ count: DRAWS, labels, data: centred(look, data), errors: errors.map(({ moves, shape, dof, sample }) => ({ moves, shape, dof, sample })), pairs, cells, names });
+  const stated = errors.map(({ moves, shape, dof, sample }) => ({ moves, shape, dof, sample })), rough = looked.map(([name]) => LIVE.columns[name].rough ?? 0);
+  carlo.worker.postMessage({ count: DRAWS, labels, data: centred(look, data), errors: stated, pairs, cells, names: names(cells), looked: { cells: looked, names: names(looked), rough } });
 }
 
 // What was given as it is expected to be: a truncated number is larger than what it says.
@@ -64,8 +74,15 @@ function toldBy(sorted) {
   return { lost, u, ends };
 }
 
-function tellDraws(look) {
+function tellDraws(look, more = []) {
   if (look !== page.look) return;
+  const { name, index } = bar, row = look.trace.row(name, index);
+  if (isEdited() && more.some((one) => one !== 0)) writeUncertain(look);
+  if (row >= 0 && (more.some((one) => one !== 0) || carlo.refused)) {
+    byId("bar-sure").hidden = true;
+    fillSure(look, name, row);
+  }
+  tellStale();
   writePanel(look);
   fillDraws(look);
 }

@@ -21,10 +21,10 @@ function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.map(([name, index], place) => {
     const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
-    // Draws may tell another standard uncertainty than the first order does, or none.
-    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]];
-    const second = live && (LIVE.columns[name].bent?.[index] || drawn && !(Math.abs(drawn.u / look.sure.u(name, row) - 1) <= OFF)), u = !second && firstOrder(look, name, row);
-    const more = live && isEdited() && look.trace.isOk(name, row) ? [...(second ? ["second order"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
+    // Draws may tell another standard uncertainty than the law of propagation does, or none.
+    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], of = knownU(look, name, row);
+    const other = live && drawn && !(Math.abs(drawn.u / LIVE.columns[name].scale / of - 1) <= OFF), u = !other && of;
+    const more = live && isEdited() && look.trace.isOk(name, row) ? [...(other ? ["draws differ"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
     const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
       make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
@@ -79,9 +79,14 @@ function makeAround() {
   for (const legend of all("main .legend")) if (legend.textContent.includes("Stated uncertainties:")) parts.push([legend, "list of stated uncertainties"]);
   if (LIVE.shared) for (const first of all(".headline, #uncertain > :first-child")) parts.push([first]);
   page.stale = parts.map(([place, what]) => {
-    const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "After edits U is of first order: a build says where the second counts.");
+    const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "This browser tells U by first order alone: a build says where the second counts.");
+    word.alone = !what;
     place.after(word);
     return word;
   });
   makePanel();
+}
+
+function tellStale() {
+  for (const word of page.stale) word.hidden = !isEdited() || (word.alone && !carlo.refused);
 }

@@ -1,5 +1,5 @@
-// What a sheet gives when its inputs are drawn from their distributions (JCGM 101). A worker runs the program and this
-// file, which know nothing of the page, and ends here.
+// What a sheet gives when its inputs are drawn from their distributions (JCGM 101). A worker runs the program, this file
+// and the two behind it, which know nothing of the page.
 
 // Numbers between 0 and 1, the same ones every time (Doty-Humphrey's sfc32, of PractRand).
 function generator() {
@@ -14,6 +14,8 @@ function generator() {
   for (let n = 0; n < 16; n++) next();
   return next;
 }
+
+const mixedIn = (pairs) => [...new Set(pairs.flatMap(([a, b]) => [a, b]))].sort((a, b) => a - b);
 
 // A root of the correlations of some errors, as the rows of Cholesky's factor; nothing where nothing is left.
 function rootOf(mixed, pairs) {
@@ -45,7 +47,7 @@ function drawer(errors, pairs) {
   const shapes = {
     normal, rectangular: () => Math.sqrt(3) * (2 * next() - 1), triangular: () => Math.sqrt(6) * (next() - next()), arcsine: () => Math.SQRT2 * wave(next()),
   };
-  const mixed = [...new Set(pairs.flatMap(([a, b]) => [a, b]))].sort((a, b) => a - b), root = rootOf(mixed, pairs);
+  const mixed = mixedIn(pairs), root = rootOf(mixed, pairs);
   const shared = ({ sample }) => sample && errors.filter((other) => other.sample === sample).length > 1;
   const places = errors.map((_, n) => mixed.indexOf(n)), wide = errors.map((error, n) => error.dof && (shared(error) || places[n] < 0));
   return () => {
@@ -63,25 +65,33 @@ function otherRows(here, there) {
   return Object.keys(here).filter(moved);
 }
 
+// What was given, with errors that are so many standard uncertainties.
+function displaced(data, errors, by) {
+  const inputs = { ...data };
+  errors.forEach(({ moves }, which) => {
+    for (const [name, row, u] of by[which] ? moves : []) {
+      if (inputs[name] === data[name]) inputs[name] = data[name].slice();
+      inputs[name][row] += u * by[which];
+    }
+  });
+  return inputs;
+}
+
+// The program of some cells alone, by the columns that they rest on.
+function within(names) {
+  const asked = new Set(names.flat());
+  return { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => asked.has(name)) };
+}
+
 // The values of some cells, sorted, of as many draws as asked for: those that have one over the rows of the estimate.
 // `data` and `labels` are the sheet's; `names` has for each cell the columns that it rests on, and its own.
 function drawn({ count, labels, data, errors, pairs, cells, names }) {
-  const asked = new Set(names.flat()), program = { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => asked.has(name)) };
-  const draw = drawer(errors, pairs), found = cells.map(() => []), estimate = evaluateSheet(program, labels, data).kept;
+  const program = within(names), draw = drawer(errors, pairs), found = cells.map(() => []), estimate = evaluateSheet(program, labels, data).kept;
   for (let n = 0; n < count; n++) {
-    const inputs = { ...data }, by = draw();
-    errors.forEach(({ moves }, which) => {
-      for (const [name, row, u] of moves) {
-        if (inputs[name] === data[name]) inputs[name] = data[name].slice();
-        inputs[name][row] += u * by[which];
-      }
-    });
-    const { value, status, kept } = evaluateSheet(program, labels, inputs), others = otherRows(kept, estimate);
+    const { value, status, kept } = evaluateSheet(program, labels, displaced(data, errors, draw())), others = otherRows(kept, estimate);
     cells.forEach(([name, row], which) => {
       if (!status[name][row] && !others.some((other) => names[which].includes(other))) found[which].push(value[name][row]);
     });
   }
   return found.map((values) => new Float64Array(values).sort());
 }
-
-if (!self.document) self.onmessage = ({ data }) => postMessage(drawn(data));

@@ -1,5 +1,5 @@
 // How sure the cells are: the errors of what was given, and what they do to each cell, by the law of propagation of
-// uncertainty (JCGM 100, 5.1 and 5.2), to first order.
+// uncertainty (JCGM 100, 5.1 and 5.2), to first order; and with what a worker finds that terms of second order add.
 
 const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
 
@@ -36,7 +36,13 @@ class Sure {
       const rows = [...this.trace.sheet.value[one].keys()].map((row) => [one, other].map((name) => place(this.trace.address(name, row))));
       return rows.filter((both) => !both.includes(-1)).map((both) => [...both, r]);
     });
-    [this.known, this.told] = [{}, {}];
+    [this.known, this.told, this.more] = [{}, {}, {}];
+  }
+
+  // What terms of second order add to the variance of a cell: NaN if nobody knows.
+  learn([name, row], more) {
+    this.more[[name, row]] = more;
+    delete this.told[name];
   }
 
   // What each error does to a cell, in SI, with its sign.
@@ -75,10 +81,10 @@ class Sure {
   }
 
   sources(name, row) {
-    const parts = this.parts(name, row), u = this.u(name, row), variances = this.variances(parts), least = 1e-12 * Math.max(...parts.map(Math.abs));
+    const parts = this.parts(name, row), first = this.u(name, row), more = this.more[[name, row]] || 0, u = Math.sqrt(first ** 2 + more), variances = this.variances(parts), least = 1e-12 * Math.max(...parts.map(Math.abs));
     const from = this.errors.map((error, n) => ({ ...error, part: parts[n], share: variances[n] / u ** 2 }));
-    const factor = this.factor(parts, variances, this.freedom(parts, variances, u), u);
-    return { u, factor, from: from.filter(({ part }) => Math.abs(part) > least).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)) };
+    const factor = this.factor(parts, variances, this.freedom(parts, variances, first), u, more);
+    return { u, factor, second: more / u ** 2, from: from.filter(({ part }) => Math.abs(part) > least).sort((a, b) => Math.abs(b.share) - Math.abs(a.share)) };
   }
 
   // Effective degrees of freedom (JCGM 100, G.2b): errors of one sample are one estimate. NaN if correlated ones have any.
@@ -96,8 +102,15 @@ class Sure {
   }
 
   // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
-  factor(parts, variances, freedom, u) {
-    const { errors, pairs } = this, mixed = new Set(pairs.flatMap(([a, b]) => (parts[a] && parts[b] ? [a, b] : [])));
+  factor(parts, variances, freedom, u, more) {
+    const { errors, pairs } = this;
+    // With terms of second order they are no sum: the shape is that of an error that dominates all else, or normal.
+    if (more) {
+      const sizes = parts.map(Math.abs), most = Math.max(...sizes), { shape, dof } = errors[sizes.indexOf(most)];
+      const alone = ENDED[shape] && !dof && sum(parts.map((part) => part ** 2)) - most ** 2 + Math.abs(more) <= (DOMINANT * most) ** 2;
+      return alone ? summedFactor([{ shape, size: 1 }]) : studentFactor(freedom);
+    }
+    const mixed = new Set(pairs.flatMap(([a, b]) => (parts[a] && parts[b] ? [a, b] : [])));
     const ended = errors.map(({ shape }, n) => Boolean(parts[n] && !mixed.has(n) && ENDED[shape]));
     if (!freedom || !ended.includes(true) || errors.some(({ dof, shape }, n) => parts[n] && dof && shape !== "t")) return studentFactor(freedom);
     // All others are one error, as they are where nothing else is.
@@ -111,19 +124,22 @@ class Sure {
 
 const percent = (share) => `${figureText(decimals(100 * share, 0))}\u00a0%`;
 
-// The standard uncertainty of a cell in its unit, where first order tells it and it is more than nothing.
-function firstOrder(look, name, row) {
-  const { scale, kept, bent } = LIVE.columns[name], u = LIVE.shared && row >= 0 && !(kept ?? bent)?.[look.trace.index(name, row)] ? look.sure.u(name, row) : 0;
+// The standard uncertainty of a cell in its unit, where it is known and more than nothing; not where terms of second order
+// counted as issued, until it is known what they add.
+function knownU(look, name, row) {
+  if (!LIVE.shared || row < 0) return 0;
+  const { scale, kept, bent } = LIVE.columns[name], index = look.trace.index(name, row), more = look.sure.more[[name, row]];
+  const u = kept?.[index] || (bent?.[index] && more === undefined) ? 0 : Math.sqrt(look.sure.u(name, row) ** 2 + (more || 0));
   return u > 0 && u < Infinity && u / scale;
 }
 
 // Value, u, k and U of a cell, as texts, and its budget; nothing where there is none.
 function sureOf(look, name, row) {
   const { scale, zero } = LIVE.columns[name];
-  if (!firstOrder(look, name, row)) return null;
-  const { u, factor, from } = look.sure.budget(name, row), value = (look.trace.sheet.value[name][row] - zero) / scale;
+  if (!knownU(look, name, row)) return null;
+  const { u, factor, from, second } = look.sure.budget(name, row), value = (look.trace.sheet.value[name][row] - zero) / scale;
   const of = (width) => stated(value, width / scale, LIVE.most).map(figureText), known = factor > 0;
-  return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from };
+  return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from, second };
 }
 
 // The results with their uncertainties, again: in their table, and where they stand first.
@@ -131,11 +147,13 @@ function writeUncertain(look) {
   for (const line of LIVE.shared ? all("#uncertain tbody tr") : []) {
     const [, name, index = ""] = ADDRESS.exec(line.cells[0].textContent), row = look.trace.row(name, index);
     const known = sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
-    const { texts, from } = known || { texts: [shown, "", "", ""], from: [] };
+    const { texts, from, second } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
     const lacking = row >= 0 && !known && look.sure.lacking(name, row);
     const most = estimates(look, from).slice(0, 3).filter(({ share }) => share >= 0.05);
-    line.cells[6].replaceChildren(...lacking ? [lacking] : most.flatMap(({ called, rows, share }, n) => [n ? ", " : "", make("code", {}, called), `${rows}\u00a0${percent(share)}`]));
+    const told = most.map(({ called, rows, share }) => [make("code", {}, called), `${rows}\u00a0${percent(share)}`]);
+    if (second) told.push([`second order\u00a0${percent(second)}`]);
+    line.cells[6].replaceChildren(...lacking ? [lacking] : told.flatMap((one, n) => (n ? [", ", ...one] : one)));
   }
   for (const told of all(".headline .sure")) {
     const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, [, , factor, wide] = sureOf(look, name, look.trace.row(name, index))?.texts ?? [];

@@ -94,7 +94,7 @@ def alike(ours: list[str], theirs: list[str]) -> bool:
 
 # What stands beside the cells and follows from them. A build says of a cell without a value that it has none,
 # an edited page shows its code in the sentence as issued.
-# What is said of terms of second order stays as issued, struck out.
+# What the report says of terms of second order stays as issued, struck out.
 _AROUND = """() => {
   const text = (element) => {
     const copy = element.cloneNode(true);
@@ -159,9 +159,9 @@ class Live:
         found: list[str] = self.page.evaluate(_AROUND)
         return found
 
-    def around_to_first_order(self) -> list[str]:
-        """The same without expanded uncertainties: an edited page does not follow terms of second order."""
-        return [re.sub(r"\s*U\s=\s.*?\(k = [\d.]+\)", "", text) for text in self.around()]
+    def wait_for_draws(self) -> None:
+        """Until a worker has looked at terms of second order, and drawn."""
+        self.page.wait_for_function("() => document.documentElement.dataset.draws === 'done'")
 
     def state(self) -> list[str]:
         """Every character of the report, and what stands in its inputs."""

@@ -151,7 +151,8 @@ def test_cells_outside_of_what_is_expected_are_marked_and_counted(
         assert (ours == {""}) == (name in ("alpha_mean", "v"))
     fresh = open_page(driving.static(report, tmp_path / "edited.html"))
     assert driving.alike(driving.shown(cells), driving.shown(fresh.cells()))
-    assert driving.alike(live.around_to_first_order(), fresh.around_to_first_order())
+    live.wait_for_draws()
+    assert driving.alike(live.around(), fresh.around())
     told = live.page.locator("#missing").text_content() or ""
     assert "deeper than the radius of the ball" in told
     assert "e rises with the speed" in told
