@@ -290,12 +290,28 @@ def vanishes(residual: Expr) -> bool:
     attempts: tuple[Callable[[], Any], ...] = (
         lambda: numerator,
         lambda: expand(powsimp(numerator)),
+        lambda: _row_by_row(numerator),
         lambda: _simplified(numerator),
         lambda: _simplified(residual),
         lambda: _simplified(_undisguised(residual)),
         lambda: _in_half_angles(residual),
     )
     return any(attempt() == 0 for attempt in attempts) or _stays_zero(residual)
+
+
+def _row_by_row(expression: Expr) -> Any:
+    """Sums over the same rows as one sum, each term of which vanishes with its numerator."""
+    rows: dict[Any, Expr] = {}
+    rest: list[Expr] = []
+    for term in Add.make_args(expression):
+        total = next((factor for factor in Mul.make_args(term) if isinstance(factor, Sum)), None)
+        before = term if total is None else term.xreplace({total: Integer(1)})
+        if total is None or before.has(Sum, *total.variables):
+            rest.append(term)
+        else:
+            rows[total.limits] = rows.get(total.limits, Integer(0)) + before * total.function
+    left = any(expand(_numerator(expand_power_base(body))) != 0 for body in rows.values())
+    return expression if left else Add(*rest)
 
 
 def _stays_zero(expression: Expr) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import islice, product
 from typing import Any
 
-from sympy import Expr, Indexed, Symbol, true
+from sympy import Add, Basic, Expr, Indexed, Sum, Symbol, true
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
@@ -89,7 +89,7 @@ class FewRows:
                 yield Statement(statement.source, sides, conditions, hints)
 
     def _plain(self, expression: Any) -> Any:
-        expression = in_terms(expression)
+        expression = _written_out(expression)
         for kind in (OrderStatistic, Indexed, AppliedUndef):
             plain = {}
             for part in sorted(expression.atoms(kind), key=str):
@@ -98,6 +98,20 @@ class FewRows:
                 self.names[plain[part]] = part
             expression = expression.xreplace(plain)
         return expression
+
+
+def _written_out(expression: Any) -> Any:
+    """Sums over rows that are known by their numbers term by term; others in the common form."""
+    if not isinstance(expression, Basic) or not expression.has(Sum):
+        return expression
+    if isinstance(expression, Sum):
+        *inner, (index, low, high) = expression.limits
+        body = Sum(expression.function, *inner) if inner else expression.function
+        if not (low.is_Integer and high.is_Integer):
+            return in_terms(expression)
+        rows = range(int(low), int(high) + 1)
+        return Add(*(_written_out(body.subs(index, row)) for row in rows))  # what runs within is another one
+    return expression.func(*map(_written_out, expression.args))
 
 
 def _sizes(parts: Iterable[Any]) -> set[Any]:

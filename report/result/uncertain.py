@@ -193,7 +193,9 @@ class Budget:
 
     @property
     def doubt(self) -> str:
-        """That, with its reason; nothing where first order is enough."""
+        """That, with its reason; nothing where first order is enough, nor of a cell without a value."""
+        if math.isnan(self.value):
+            return ""
         if not self.is_known:
             return f"U is not known: {self.unlooked}" if self.unlooked else ""
         if not self.of_second_order or math.isnan(self.factor):

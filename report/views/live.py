@@ -230,6 +230,10 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     entry |= digits(report, column)
     if doubt := report.uncertain().advice.get(column.name):
         entry["doubt"] = doubt
+    if not column.positive and any(
+        b.name == column.name and b.least == 0 for b in report.uncertain().budgets
+    ):
+        entry["floor"] = 1
     if (jumps := report.uncertain().rough.get(column.name)) is not None:
         entry["rough"] = 1 + jumps
     if column.spare or report.told_of(column) != column.name:

@@ -121,7 +121,7 @@ def write_limits(
             other = tail if budget.shape is Shape.CONVOLVED else "NA()"
             known = as_issued(end, z[name == "high"], now)
             tail = f'IF({{shape}}="{budget.shape}",{known},{other})'
-        to.line(said, f"probability that it lies {said}", f"IF(ISNUMBER({end}),{tail},0)", now, CHANCE)
+        to.line(said, f"probability that it lies {said}", f"IF(ISTEXT({end}),0,{tail})", now, CHANCE)
     inside = (
         "1-({below}+{above})"
         if budget.law

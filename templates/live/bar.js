@@ -51,7 +51,7 @@ function fillBar(look, name, row, index) {
 function fillSure(look, name, row) {
   const known = sureOf(look, name, row), { kept, bent } = LIVE.columns[name], doubt = doubtOf(look, name, row);
   if (!known) {
-    const lacking = LIVE.shared && look.sure.lacking(name, row), second = bent?.[look.trace.index(name, row)] && `its uncertainty is of second order${carlo.refused ? ", which this browser leaves to a build" : " …"}`;
+    const lacking = LIVE.shared && look.sure.lacking(name, row), waits = LIVE.shared && look.sure.more[[name, row]] === undefined, second = waits && bent?.[look.trace.index(name, row)] && `its uncertainty is of second order${carlo.refused ? ", which this browser leaves to a build" : " …"}`;
     const told = lacking ? `its uncertainty is ${lacking}` : LIVE.shared ? second : kept && "its uncertainty is as issued";
     if (told && look.trace.isOk(name, row)) fillLine("bar-sure", make("span", { class: "says" }, told));
     return;
@@ -64,13 +64,6 @@ function fillSure(look, name, row) {
   });
   const wide = expanded ? [`, U = ${expanded}`, ...behind(name), ` with k = ${factor} for 95\u00a0%`, doubt ? `; ${doubt}` : ""] : [];
   fillLine("bar-sure", make("span", { class: "says" }, "sure to"), `u = ${u}`, ...behind(name), ...wide, ...from, ...second);
-}
-
-// Why U may not hold: as issued, until a worker has looked at what second order adds.
-function doubtOf(look, name, row) {
-  const more = LIVE.shared ? look.sure.more[[name, row]] : undefined;
-  if (!more && !Number.isNaN(more)) return more === 0 ? "" : LIVE.columns[name].doubt;
-  return `U ${Math.abs(more) > look.sure.u(name, row) ** 2 ? "does" : "may"} not hold: second order ${more ? "counts" : "was not looked at"}`;
 }
 
 function fillLine(id, ...nodes) {

@@ -23,8 +23,9 @@ function drawSoon() {
   if (carlo.look !== look) Object.assign(carlo, { look, found: {} });
   clearTimeout(carlo.timer);
   carlo.worker?.terminate();
-  ROOT.dataset.draws = "due";
-  if (LIVE.shared && !carlo.refused) carlo.timer = setTimeout(() => drawNow(look), PAUSE);
+  const able = LIVE.shared && !carlo.refused;
+  ROOT.dataset.draws = able ? "due" : "done";
+  if (able) carlo.timer = setTimeout(() => drawNow(look), PAUSE);
 }
 
 function drawNow(look) {
@@ -36,7 +37,8 @@ function drawNow(look) {
   const names = (of) => of.map(([name]) => [name, ...look.trace.ancestors(name)]);
   const { labels, data } = look.trace.sheet, { errors, pairs } = look.sure, refuse = () => {
     carlo.refused = true;
-    tellDraws(look);
+    ROOT.dataset.draws = "done";
+    tellDraws(look, []);
   };
   try {
     carlo.worker = new Worker((carlo.url ??= URL.createObjectURL(new Blob([TEXT], { type: "text/javascript" }))));
@@ -71,14 +73,14 @@ function toldBy(sorted) {
   const middle = quantile(sorted, 0.5), out = Array.from(sorted, (value) => Math.abs(value - middle)).sort((a, b) => a - b).slice(-most - 1);
   const slope = sum(out.slice(1).map((one) => Math.log(one / out[0]))) / most;
   const u = length > 1 && !(slope * NO_DEVIATION >= 1) ? Math.sqrt(sum(Array.from(sorted, (value) => (value - mean) ** 2)) / (length - 1)) : NaN;
-  return { lost, u, ends };
+  return { lost, u: u < Infinity ? u : NaN, ends };
 }
 
-function tellDraws(look, more = []) {
+function tellDraws(look, more) {
   if (look !== page.look) return;
   const { name, index } = bar, row = look.trace.row(name, index);
-  if (isEdited() && more.some((one) => one !== 0)) writeUncertain(look);
-  if (row >= 0 && (more.some((one) => one !== 0) || carlo.refused)) {
+  if (isEdited() && more) writeUncertain(look);
+  if (row >= 0 && more) {
     byId("bar-sure").hidden = true;
     fillSure(look, name, row);
   }

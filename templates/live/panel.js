@@ -84,9 +84,16 @@ function makeAround() {
     place.after(word);
     return word;
   });
+  const results = byId("uncertain"), legend = results?.querySelector(".legend"), now = make("p", { class: "legend", hidden: true });
+  if (results && LIVE.shared) {
+    page.doubts = [legend, now];
+    results.append(now);
+  }
   makePanel();
 }
 
 function tellStale() {
+  page.doubts?.forEach((one, n) => one && (one.hidden = isEdited() !== Boolean(n)));
+  if (!isEdited()) page.doubts?.[1].replaceChildren();
   for (const word of page.stale) word.hidden = !isEdited() || (word.alone && !carlo.refused);
 }

@@ -3,6 +3,8 @@
 
 const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
 
+const ROUNDED = 2 ** -41, NEAR_SLOPE = 2 ** -22; // of a value; of one that moves
+
 // Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
 function* errorsIn(look) {
   for (const { name, axis } of CELLS) {
@@ -72,7 +74,15 @@ class Sure {
   u(name, row) {
     const { axis } = this.trace.declared[name];
     if (axisNamed(axis)?.kind === "repeat" || !this.trace.isOk(name, row) || this.lacking(name, row)) return NaN;
-    return ((this.known[name] ??= [])[row] ??= Math.sqrt(Math.max(0, sum(this.variances(this.parts(name, row))))));
+    return ((this.known[name] ??= [])[row] ??= this.combined(name, row));
+  }
+
+  // What is no more than the rounding of slopes that are 0 is nothing: they are asked for by steps that are seen beside
+  // what moves, in a double that has 53 bits.
+  combined(name, row) {
+    const parts = this.parts(name, row), u = Math.sqrt(Math.max(0, sum(this.variances(parts)))), { value } = this.trace.sheet;
+    const far = Math.max(...this.errors.map(({ moves }, n) => (parts[n] ? Math.max(...moves.map(([of, at, by]) => Math.abs(by / value[of][at]))) : 0)));
+    return LIVE.columns[name].given || u > ROUNDED * Math.min(1, far / NEAR_SLOPE) * Math.abs(value[name][row]) ? u : 0;
   }
 
   // Where the uncertainty of a cell comes from, the largest first, and its coverage factor.
@@ -142,10 +152,34 @@ function sureOf(look, name, row) {
   return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from, second };
 }
 
+// Why U may not hold: as issued, until a worker has looked at what second order adds.
+function doubtOf(look, name, row) {
+  const more = LIVE.shared ? look.sure.more[[name, row]] : undefined, { floor, doubt } = LIVE.columns[name];
+  if (!more && !Number.isNaN(more)) return more === 0 ? "" : doubt;
+  if (!knownU(look, name, row)) return "";
+  const { u, factor } = look.sure.budget(name, row), low = floor || look.trace.declared[name].positive ? 0 : -Infinity;
+  const fails = Math.abs(more) > look.sure.u(name, row) ** 2 || look.trace.sheet.value[name][row] - factor * u < low;
+  if (!(factor > 0)) return "";
+  return `U ${fails ? "does" : "may"} not hold: second order ${more ? "counts" : "was not looked at"}${fails ? `; use loopsheet budget ${look.trace.address(name, row)} --draws 1000000` : ""}`;
+}
+
+// The same of all results, below their table.
+function writeDoubts(look, cells) {
+  const found = {};
+  for (const [name, row] of cells) {
+    const doubt = row >= 0 && (doubtOf(look, name, row) ?? "").split(";")[0];
+    if (doubt) (found[doubt] ??= []).push(look.trace.address(name, row));
+  }
+  const told = Object.entries(found).flatMap(([doubt, names]) => [`${doubt} (`, ...names.flatMap((name, n) => [n ? (n < names.length - 1 ? ", " : " and ") : "", make("code", {}, name)]), "). "]);
+  page.doubts?.[1].replaceChildren(...told, ...(told.length ? [make("code", {}, "loopsheet budget CELL --draws 1000000"), " tells the interval."] : []));
+}
+
 // The results with their uncertainties, again: in their table, and where they stand first.
 function writeUncertain(look) {
+  const cells = [];
   for (const line of LIVE.shared ? all("#uncertain tbody tr") : []) {
     const [, name, index = ""] = ADDRESS.exec(line.cells[0].textContent), row = look.trace.row(name, index);
+    cells.push([name, row]);
     const known = sureOf(look, name, row), shown = row < 0 ? "–" : look.cell(name, row).text;
     const { texts, from, second } = known || { texts: [shown, "", "", ""], from: [] };
     texts.forEach((text, n) => setText(line.cells[n + 1], text));
@@ -155,10 +189,14 @@ function writeUncertain(look) {
     if (second) told.push([`second order\u00a0${percent(second)}`]);
     line.cells[6].replaceChildren(...lacking ? [lacking] : told.flatMap((one, n) => (n ? [", ", ...one] : one)));
   }
-  for (const told of all(".headline .sure")) {
-    const { cell: name, index } = told.parentElement.querySelector("[data-cell]").dataset, [, , factor, wide] = sureOf(look, name, look.trace.row(name, index))?.texts ?? [];
+  for (const told of LIVE.shared ? all(".headline .sure") : []) {
+    const box = told.parentElement, { cell: name, index } = box.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), [, , factor, wide] = sureOf(look, name, row)?.texts ?? [];
     told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...behind(name), ` (k\u00a0=\u00a0${factor})`] : []));
+    const doubt = wide ? doubtOf(look, name, row) : "", at = box.querySelector(".doubt") ?? (doubt && make("span", { class: "doubt" }));
+    if (at && !at.isConnected) told.after(at);
+    if (at) at.replaceChildren(...(doubt ?? "").split(/(loopsheet .*)/).filter(Boolean).map((text, n) => (n ? make("code", {}, text) : text)));
   }
+  writeDoubts(look, cells);
 }
 
 // Errors of one sample together, as one estimate, the largest sum first; with the cell that one moves alone.

@@ -94,18 +94,14 @@ def alike(ours: list[str], theirs: list[str]) -> bool:
 
 # What stands beside the cells and follows from them. A build says of a cell without a value that it has none,
 # an edited page shows its code in the sentence as issued.
-# What the report says of terms of second order stays as issued, struck out.
 _AROUND = """() => {
-  const text = (element) => {
-    const copy = element.cloneNode(true);
-    for (const doubt of copy.querySelectorAll(".doubt")) doubt.remove();
-    return copy.textContent.replace(/\\s+/g, " ").trim();
-  };
+  const text = (element) => element.textContent.replace(/\\s+/g, " ").trim();
   const all = (selector) => Array.from(document.querySelectorAll(selector), text);
   const missing = document.getElementById("missing");
   return [...all("#published tbody tr"), ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
     ...all("#result > p:not(.stale)").filter((text) => !/#[A-Z]+!|no value: /.test(text)),
-    ...all(".headline dd"), ...all("#published > ul > li")];
+    ...all(".headline dd"), ...all("#published > ul > li"),
+    ...all("#uncertain > .legend:not([hidden])").filter(Boolean)];
 }"""
 
 # A window that nobody sees may be drawn once a minute, or never: no frame is waited for longer than it takes.

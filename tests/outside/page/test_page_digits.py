@@ -5,12 +5,14 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copytree
 
 import driving
 import pytest
 from driving import Live
 
 from loopsheet.report.cli import main
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
@@ -216,3 +218,26 @@ def test_what_is_one_estimate_stands_together_after_an_edit(open_page: Open, tmp
     live.page.locator("#cell-D").click(position={"x": 3, "y": 3})
     of_bar = live.page.locator("#bar-sure > :is(button, span:not(.says))").all_inner_texts()
     assert ["V (3\u00a0readings)" in text for text in of_bar] == [True, False, False, False]
+
+
+@pytest.mark.parametrize(
+    ("issued", "edited"), [("0", "1"), ("20", "0")], ids=["no more of second order", "now of second order"]
+)
+def test_the_doubt_about_second_order_follows_an_edit(
+    open_page: Open, tmp_path: Path, issued: str, edited: str
+) -> None:
+    """A gauge block at 20 °C and beside it: on its card, in the table and below it, as a build has it."""
+    pages = []
+    for t in (issued, edited):
+        place = copytree(PAPER.parent / "ea_s4", tmp_path / t, ignore=lambda *_: ["out"])
+        toml = (place / "report.toml").read_text(encoding="utf-8")
+        (place / "report.toml").write_text(toml.replace('\nt = "0 K', f'\nt = "{t} K'), encoding="utf-8")
+        assert main(["build", str(place), "--to", "html"]) in (0, 1)
+        pages.append(open_page(place / "out" / "report.html", own=True))
+    ours, theirs = pages
+    ours.type("t", "", edited)
+    ours.wait_for_draws()
+    assert uncertain(ours) == uncertain(theirs)
+    told = [[text for text in page.around() if "U" in text] for page in pages]
+    assert driving.alike(*told)
+    assert any("U may not hold" in text for text in told[0]) == (edited == "0")
