@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from shutil import copytree
@@ -13,18 +11,14 @@ import numpy as np
 import pytest
 import test_far_from_linear as far
 from test_digits import CAMPAIGNS
-from test_live_uncertain import EXAMPLES
+from test_live_uncertain import EXAMPLES, in_node
 
-from loopsheet.report import stages
-from loopsheet.report.document.material import Material
-from loopsheet.report.engines.javascript import RUNTIME
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import live, live_uncertain
-from loopsheet.report.views.writer import TEMPLATES
 
 SCRIPTS = (*live.ALONE, "numbers.js", "inputs.js", "trace.js", "coverage.js", "sure.js", "cells.js")
 HARNESS = """
@@ -49,19 +43,10 @@ Told = Callable[[Report, list[Cell], dict[str, str]], list[dict[str, float | Non
 @pytest.fixture(scope="module")
 def told(require: Callable[..., str]) -> Told:
     """What the worker's scripts find for some cells, after an edit of parameters."""
-    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in SCRIPTS]
 
     def run(report: Report, cells: list[Cell], edits: dict[str, str]) -> list[dict[str, float | None]]:
-        head = f"const self = {{ document: 1 }}, LIVE = {live.data(report, Material(report))};"
-        head += f"const EDITS = {json.dumps(edits)}, ASKED = {json.dumps(cells)};"
-        head += "LIVE.columns = wholeColumns(LIVE.columns);"
-        program = f"const PROGRAM = {stages.program(report)};"
-        script = "\n".join([RUNTIME.read_text(encoding="utf-8"), head, program, *own, HARNESS])
-        done = subprocess.run(
-            [require("node"), "-"], input=script, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
-        found: list[dict[str, float | None]] = json.loads(done.stdout)
+        known = {"self": {"document": 1}, "EDITS": edits, "ASKED": cells}
+        found: list[dict[str, float | None]] = in_node(require("node"), report, known, SCRIPTS, HARNESS)
         return found
 
     return run

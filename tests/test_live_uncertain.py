@@ -56,24 +56,22 @@ Edits = list[tuple[str, int, str]]
 Told = Callable[[Report, Edits], Any]
 
 
+def in_node(node: str, report: Report, known: dict[str, Any], scripts: tuple[str, ...], harness: str) -> Any:
+    """What a harness behind some of the page's scripts prints of a report; `known`: its constants."""
+    head = [f"const LIVE = {live.data(report, Material(report))};"]
+    head += [f"const {name} = {json.dumps(value)};" for name, value in known.items()]
+    head += ["LIVE.columns = wholeColumns(LIVE.columns);", f"const PROGRAM = {stages.program(report)};"]
+    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in scripts]
+    script = "\n".join([RUNTIME.read_text(encoding="utf-8"), *head, *own, harness])
+    done = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
 @pytest.fixture(scope="session")
 def told(require: Callable[..., str]) -> Told:
     """What the page's scripts tell of the cells of a report, in node."""
-    own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in SCRIPTS]
-
-    def run(report: Report, edits: Edits) -> Any:
-        data = live.data(report, Material(report))
-        head = f"const LIVE = {data}, EDITS = {json.dumps(edits)};"
-        head += "LIVE.columns = wholeColumns(LIVE.columns);"
-        program = f"const PROGRAM = {stages.program(report)};"
-        script = "\n".join([RUNTIME.read_text(encoding="utf-8"), head, program, *own, HARNESS])
-        done = subprocess.run(
-            [require("node"), "-"], input=script, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return run
+    return lambda report, edits: in_node(require("node"), report, {"EDITS": edits}, SCRIPTS, HARNESS)
 
 
 def agrees(found: Any, report: Report, before: Report) -> None:

@@ -17,8 +17,8 @@ function independent(errors, pairs) {
 }
 
 // For each cell, in the square of its unit in SI: 0 where it does not count, NaN where nobody knows, and infinite where
-// first order tells nothing, either. `rough` has
-// for each whether it rests on a function with corners (1) or on what is taken by order (2).
+// first order tells nothing, either. `rough` has for each whether it rests on a function with corners (1) or on what is
+// taken by order (2).
 function secondOrder({ labels, data, errors, pairs, cells, names, rough }) {
   const program = within(names), reach = errors.map(({ moves }) => ({ moves: moves.filter(([name]) => program.columns.some((one) => one.name === name)) }));
   const ways = independent(errors, pairs), along = (way, far) => evaluateSheet(program, labels, displaced(data, errors, way.by.map((one) => far * one)));

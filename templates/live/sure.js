@@ -77,8 +77,8 @@ class Sure {
     return ((this.known[name] ??= [])[row] ??= this.combined(name, row));
   }
 
-  // What is no more than the rounding of slopes that are 0 is nothing: they are asked for by steps that are seen beside
-  // what moves, in a double that has 53 bits.
+  // What is no more than the rounding of slopes that are 0 is nothing: a slope is the change of a double, of 53 bits, over
+  // the step that it is asked by (MOVE and LEAST of sensitivities.js).
   combined(name, row) {
     const parts = this.parts(name, row), u = Math.sqrt(Math.max(0, sum(this.variances(parts)))), { value } = this.trace.sheet;
     const far = Math.max(...this.errors.map(({ moves }, n) => (parts[n] ? Math.max(...moves.map(([of, at, by]) => Math.abs(by / value[of][at]))) : 0)));
