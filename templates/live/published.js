@@ -10,8 +10,9 @@ function findingOf(same, again, known, other) {
 
 function compared(look, [cell, index, text, scale, truncated, known, other]) {
   const row = look.trace.row(cell, index);
-  if (row < 0 || !look.trace.isOk(cell, row)) {
-    const again = row < 0 ? "–" : CODES[look.trace.sheet.status[cell][row]];
+  if (row < 0) return { again: "–", verdict: "left out", finding: "" };
+  if (!look.trace.isOk(cell, row)) {
+    const again = CODES[look.trace.sheet.status[cell][row]];
     const finding = known === null ? LIVE.findings.unexpected : findingOf(false, again, known, other);
     return { again, verdict: "no value", finding };
   }
@@ -38,8 +39,11 @@ function writePublished(look) {
     });
     writeGroup(groups.findIndex((group) => group.id === id), rows, called, found);
   }
-  writeTally(groups.flatMap((group) => group.found));
+  writeTally(groups.flatMap((group) => group.found).filter(counts));
 }
+
+// What rests on a test that is left out is no finding, and a build does not count it.
+const counts = (one) => one.verdict !== "left out";
 
 const comes = (count) => `${count || "none"} ${count > 1 ? "come" : "comes"}`;
 
@@ -63,17 +67,17 @@ function writeTally(found) {
 
 // The line that sums up one table of the source: rewritten behind its title.
 function writeGroup(place, rows, called, found) {
-  const element = all("#published > ul > li")[place], start = `: of ${plural(rows.length, "value")}`;
-  const node = element && Array.from(element.childNodes).find((one) => one.nodeType === Node.TEXT_NODE && one.data.includes(start));
+  const element = all("#published > ul > li")[place], start = /: of \d+ values? .*/s;
+  const node = element && Array.from(element.childNodes).find((one) => one.nodeType === Node.TEXT_NODE && start.test(one.data));
   if (!node) return;
   while (node.nextSibling) node.nextSibling.remove();
-  const same = found.filter((one) => one.verdict === "same").length;
+  const count = found.filter(counts).length, same = found.filter((one) => one.verdict === "same").length;
   const known = found.map((one, row) => ({ ...one, called: called[row], text: rows[row][2] })).filter((one) => one.distance !== undefined);
   const furthest = known.reduce((a, b) => (a && Math.abs(a.distance) >= Math.abs(b.distance) ? a : b), null);
   const of = furthest?.called ? ` of ${furthest.called}` : "";
-  const off = furthest && same < found.length
+  const off = furthest && same < count
     ? `; the furthest is off by ${distanceText(furthest.distance)} units, ${furthest.again} against the published ${furthest.text}${of}`
     : "";
-  const text = `${node.data.slice(0, node.data.indexOf(start))}${start} ${comes(same)} out as printed${off}.`;
+  const text = node.data.replace(start, () => `: of ${plural(count, "value")} ${comes(same)} out as printed${off}.`);
   if (node.data !== text) node.data = text;
 }
