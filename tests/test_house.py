@@ -36,9 +36,9 @@ MAX_LINES = 650
 PROVER = {
     f"derivations.{name}"
     for name in (
-        *("algebra", "arranged", "cells", "dimensions", "equation", "errata", "evaluation", "facts"),
-        *("few_rows", "grounds", "proof", "proved", "rebuilt", "reductions", "sampling", "search", "space"),
-        *("sums", "system", "text", "together", "unit_text", "vocabulary"),
+        *("algebra", "arranged", "cells", "differentiated", "dimensions", "equation", "errata", "evaluation"),
+        *("facts", "few_rows", "grounds", "proof", "proved", "rebuilt", "reductions", "sampling", "search"),
+        *("space", "sums", "system", "text", "together", "unit_text", "vocabulary"),
     )
 }
 ALGEBRA = {"sympy", "mpmath"}

@@ -25,7 +25,6 @@ from sympy import (
     Symbol,
     ceiling,
     degree,
-    diff,
     exp,
     expand_power_exp,
     factor,
@@ -38,6 +37,7 @@ from sympy import (
 )
 from sympy.logic.boolalg import Boolean
 
+from ...derivations.differentiated import differentiated
 from ..column import Root
 from ..named import name_of
 from ..plan.domain import defined, typed_symbols
@@ -243,7 +243,7 @@ def slope(form: Expr, unknown: Symbol) -> tuple[Expr, Boolean]:
     `unknown`: of which only is assumed what holds in the interval.
     """
     jumps = any(part.has(unknown) for part in form.atoms(*JUMPS))
-    return diff(form, unknown), false if jumps else defined(form)
+    return differentiated(form, unknown), false if jumps else defined(form)
 
 
 def held(condition: Boolean) -> Expr:

@@ -10,9 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, diff, sign
+from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, sign
 from sympy.logic.boolalg import Boolean
 
+from ...derivations.differentiated import differentiated
 from ..plan.nodes import Leaf, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from ..sheet import Column
 from .excel import IfError, IsNumber
@@ -104,7 +105,9 @@ class _Unrolling:
         self.cells: list[Auxiliary] = []
         # Newton's step where a derivative is a sum: three more passes over all points cost more than steps.
         summed = self.form.has(RowSum)
-        self.slopes = (diff(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
+        self.slopes = (
+            (differentiated(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
+        )
         # Other engines go on where their steps do not settle; here they end.
         self.steps = 2 * self.rule.steps
         self.now, self.alone = 0, False

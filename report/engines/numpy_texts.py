@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from sympy import Expr, Integer, Symbol, diff
+from sympy import Expr, Integer, Symbol
 
+from ...derivations.differentiated import differentiated
 from ..plan.nodes import LoopNode, Map, Plan, RootNode, RowSum, taken_over
 from ..sheet import Sheet
 from .certified import certified, enclosing
@@ -81,7 +82,7 @@ def root_texts(sheet: Sheet, plan: Plan, node: RootNode) -> dict[str, Any]:
         "constants": kernel([*constants, *cells]).plain,
         "totals": totals,
         "at": write(arguments, totals, [f]),
-        "newton": write(arguments, totals, [f, f / diff(f, unknown)]),
+        "newton": write(arguments, totals, [f, f / differentiated(f, unknown)]),
         "step": write(arguments, totals, [f, back], parts),
         "check": write(arguments, totals, [f, magnitude(f)]),
         "value": write(arguments, totals, [value]),

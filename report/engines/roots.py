@@ -6,8 +6,9 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, diff, exp, factor_terms, log
+from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, exp, factor_terms, log
 
+from ...derivations.differentiated import differentiated
 from ..plan.nodes import RowSum
 
 __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
@@ -15,9 +16,9 @@ __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
 
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
     """The function and its first three derivatives."""
-    first = diff(function, unknown)
-    second = diff(first, unknown)
-    return function, first, second, diff(second, unknown)
+    first = differentiated(function, unknown)
+    second = differentiated(first, unknown)
+    return function, first, second, differentiated(second, unknown)
 
 
 def householder(f: Expr, f1: Expr, f2: Expr, f3: Expr) -> Expr:
@@ -45,7 +46,7 @@ def step(function: Expr, unknown: Symbol) -> tuple[dict[Symbol, Expr], Expr]:
         The step, of these.
     """
     if function.has(RowSum):
-        return {}, function / diff(function, unknown)
+        return {}, function / differentiated(function, unknown)
     f, f1, f2, f3, newton, by, bent = (Symbol(f"f_{i}", real=True) for i in range(7))
     parts = dict(zip((f, f1, f2, f3), map(factor_terms, derivatives(function, unknown)), strict=True))
     # householder() divided through by f1^3: three quotients, and no power that could overflow.

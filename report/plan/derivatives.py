@@ -43,7 +43,6 @@ from sympy import (
     S,
     Subs,
     Symbol,
-    diff,
     exp,
     log,
     numer,
@@ -51,6 +50,7 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
+from ...derivations.differentiated import differentiated
 from ..axis import Axis, MemberAxis
 from ..column import Column
 from ..sheet import Sheet
@@ -177,7 +177,7 @@ class _Making:
 
     def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
         """The derivatives of an expression by what it names."""
-        return {by: diff(expression, by) for by in self.named_in(expression)}
+        return {by: differentiated(expression, by) for by in self.named_in(expression)}
 
     def named_in(self, *expressions: Expr) -> list[Symbol]:
         """The cells and totals that expressions name, sorted by name; all else is exact."""
@@ -229,11 +229,16 @@ class _RootMaking:
             at = terms.xreplace({self.unknown: here})
             node = Total(self.column, symbol, over, at, at)
             making.nodes.append(node)
-            slopes = {by: diff(terms, by).xreplace({self.unknown: here}) for by in self.names_in(terms)}
+            slopes = {
+                by: differentiated(terms, by).xreplace({self.unknown: here}) for by in self.names_in(terms)
+            }
             yield making.local(self.column, partial(self.of_sum, terms, over, here), slopes, node)
         by_value, by_form = (self.by_unknown(each, here) for each in (value, form))
         ratio = by_value / by_form
-        slopes = {by: diff(value, by) - ratio * diff(form, by) for by in self.names_in(value, form)}
+        slopes = {
+            by: differentiated(value, by) - ratio * differentiated(form, by)
+            for by in self.names_in(value, form)
+        }
         yield making.local(
             self.column,
             lambda: (
@@ -296,11 +301,11 @@ class _RootMaking:
 
     def by_unknown(self, expression: Expr, here: Expr) -> Expr:
         """The derivative by the unknown, sums included."""
-        found = diff(expression, self.unknown)
+        found = differentiated(expression, self.unknown)
         for symbol, (over, terms) in list(self.moving.items()):
             if symbol in expression.free_symbols:
                 inner = self.by_unknown(terms, here).xreplace({self.unknown: here})
-                found += diff(expression, symbol) * self.making.summed(self.column, inner, over)
+                found += differentiated(expression, symbol) * self.making.summed(self.column, inner, over)
         return found
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
 
-from sympy import Basic, Expr, Integer, Symbol, diff, false, true
+from sympy import Basic, Expr, Integer, Symbol, false, true
 from sympy.logic.boolalg import Boolean
 
+from ...derivations.differentiated import differentiated
 from ..axis import Axis, MemberAxis
 from ..column import Column
 from .order import Word
@@ -86,7 +87,7 @@ class RowSum(Expr):
 
     def _eval_derivative(self, symbol: Symbol) -> Expr:
         terms, axis = self.args
-        return RowSum(diff(terms, symbol), axis)
+        return RowSum(differentiated(terms, symbol), axis)
 
 
 class RowOrder(Expr):

@@ -12,7 +12,7 @@ DLMF 8.17.7 and M Abramowitz, I A Stegun, Handbook of Mathematical Functions, 15
 
 from __future__ import annotations
 
-from functools import lru_cache, reduce
+from functools import cache, lru_cache, reduce
 from itertools import count
 from math import ceil, log10
 from operator import mul
@@ -40,9 +40,16 @@ def in_elementary_terms(expression: Any, digits: int = DOUBLE) -> Any:
     """
     if not expression.has(*SPECIAL):
         return expression
-    expression = expression.replace(beta, lambda a, half: _beta(a, half, digits))
-    expression = expression.replace(Integral, lambda *parts: in_nodes(Integral(*parts), digits))
-    return expression.replace(betainc, lambda a, half, low, z: _incomplete(a, half, low, z, digits))
+    parts = [in_elementary_terms(argument, digits) for argument in expression.args]
+    if isinstance(expression, beta):
+        a, half = parts
+        return _beta(a, half, digits)
+    if isinstance(expression, betainc):
+        a, half, low, z = parts
+        return _incomplete(a, half, low, z, digits)
+    if isinstance(expression, Integral):
+        return in_nodes(Integral(*parts), digits)
+    return expression.func(*parts)
 
 
 def _incomplete(a: Expr, half: Expr, low: Expr, z: Expr, digits: int) -> Expr:
@@ -64,6 +71,7 @@ def _of_gauss(a: Rational, digits: int) -> tuple[Expr, ...]:
     with mpmath.workdps(digits + 20):
         first = 2 * mpmath.mpf(a.p) / a.q
 
+        @cache  # every coefficient asks for the same places
         def gauss(w: Any) -> Any:
             return mpmath.hyp2f1(first, 1, first / 2 + 1, w)
 

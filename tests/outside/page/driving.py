@@ -93,13 +93,14 @@ def alike(ours: list[str], theirs: list[str]) -> bool:
 
 
 # What stands beside the cells and follows from them. A build says of a cell without a value that it has none,
-# an edited page shows its code in the sentence as issued; of a published value that rests on a test that is left
-# out a build says nothing.
+# an edited page shows its code in the sentence as issued; of a published value of a test that is left out a
+# build says nothing.
 _AROUND = """() => {
   const text = (element) => element.textContent.replace(/\\s+/g, " ").trim();
   const all = (selector) => Array.from(document.querySelectorAll(selector), text);
   const missing = document.getElementById("missing");
-  return [...all("#published tbody tr").filter((text) => !/–\\S*left out/.test(text)), ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
+  return [...all("#published tbody tr").filter((text) => !/–\\S*left out/.test(text)),
+    ...(missing && !missing.hidden ? all("#missing tbody tr") : []),
     ...all("#result > p:not(.stale)").filter((text) => !/#[A-Z]+!|no value: /.test(text)),
     ...all(".headline dd"), ...all("#published > ul > li"),
     ...all("#uncertain > .legend:not([hidden])").filter(Boolean)];
