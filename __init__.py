@@ -49,9 +49,9 @@ def __getattr__(name: str) -> object:
         from .report.messages.errors import LoopsheetError
 
         return LoopsheetError
-    from .report import method
+    from .report.method import words
 
-    return getattr(method, name)
+    return getattr(words, name)
 
 
 def __dir__() -> list[str]:

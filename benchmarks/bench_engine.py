@@ -25,7 +25,7 @@ from loopsheet.report.column import Root
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.roots import derivatives, householder
-from loopsheet.report.method_places import Standing
+from loopsheet.report.method.places import Standing
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
 
 ROUNDS = 7

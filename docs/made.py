@@ -17,8 +17,8 @@ from loopsheet.report.files.manifest import Manifest
 from loopsheet.report.files.values import Result
 from loopsheet.report.inputs import about, keys
 from loopsheet.report.messages.catalogue import CATALOGUE, GROUPS
-from loopsheet.report.method import Method
-from loopsheet.report.method_lines import FUNCTIONS
+from loopsheet.report.method.lines import FUNCTIONS
+from loopsheet.report.method.words import Method
 from loopsheet.report.verbs import VERBS
 
 MESSAGES = Path(__file__).parent.parent / "tests" / "hostile" / "messages.txt"

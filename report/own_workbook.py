@@ -158,7 +158,7 @@ class _Own:
 
     def met_before(self, error: BaseException | None, found: Diagnostic) -> Iterator[Diagnostic]:
         """What was wrong in the body of a method, and the finding, unless it follows from that."""
-        from .method_errors import CURRENT
+        from .method.errors import CURRENT
 
         body = CURRENT.get()
         CURRENT.set(None)
@@ -192,7 +192,7 @@ def _said(error: BaseException) -> str:
 
 def _hint(error: BaseException) -> str:
     """What helps who wrote a line that fails; what a sheet complains of says it itself."""
-    from .method_lines import FUNCTIONS
+    from .method.lines import FUNCTIONS
 
     match error:
         case SheetError() if "argument of a function must be a pure number" in str(error):
@@ -239,18 +239,18 @@ def _hint(error: BaseException) -> str:
 
 def _words() -> list[str]:
     """What a method is written with."""
-    from . import method
+    from .method import words
 
-    return method.__all__
+    return words.__all__
 
 
 def _called(word: str) -> str:
     """How a word of methods is called."""
-    from . import method
+    from .method import words
 
     if word not in _words():
         return ""
-    said = signature(getattr(method, word))
+    said = signature(getattr(words, word))
     plain = [each.replace(annotation=each.empty) for each in said.parameters.values()]
     return f"it is {word}{said.replace(parameters=plain, return_annotation=said.empty)}"
 

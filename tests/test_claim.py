@@ -8,8 +8,8 @@ import pytest
 
 from loopsheet.derivations.proof import prove
 from loopsheet.derivations.proved import Proof, ProofStatus
-from loopsheet.report import method
 from loopsheet.report.cli import main
+from loopsheet.report.method import words
 from loopsheet.report.study import Study
 
 BODY = """\
@@ -144,8 +144,8 @@ def test_what_cannot_be_claimed_is_told(
 def test_a_claim_stands_in_the_body_of_a_method() -> None:
     import contextvars
 
-    with pytest.raises(method.SheetError, match="stand in the body of a class of Method"):
-        contextvars.Context().run(method.claim, 1, 1, "one")
+    with pytest.raises(words.SheetError, match="stand in the body of a class of Method"):
+        contextvars.Context().run(words.claim, 1, 1, "one")
 
 
 def test_what_is_proved_must_hold_of_the_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,7 @@ from scipy.constants import physical_constants
 from test_method import folder
 
 import loopsheet
-import loopsheet.report.method
+import loopsheet.report.method.words
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 
@@ -60,11 +60,13 @@ def test_every_constant_may_be_declared_or_is_refused() -> None:
         try:
             exec(
                 f"class One(Method):\n    c = constant({name!r})\n    d = let(2 * c, 'twice')\n",
-                {**vars(loopsheet.report.method)},
+                {**vars(loopsheet.report.method.words)},
             )
         except SheetError as error:
             refused[name] = str(error)
     assert all("unit" in said for said in refused.values()), refused
     assert len(refused) < 0.1 * len(physical_constants)
     with pytest.raises(SheetError, match="do you mean molar gas constant"):
-        exec("class One(Method):\n    c = constant('gas constant')\n", {**vars(loopsheet.report.method)})
+        exec(
+            "class One(Method):\n    c = constant('gas constant')\n", {**vars(loopsheet.report.method.words)}
+        )

@@ -17,7 +17,7 @@ from nist_strd import Strd, digits
 from sympy import Expr, IndexedBase, Sum, Symbol, exp, sin, symbols
 
 import loopsheet
-import loopsheet.report.method
+import loopsheet.report.method.words
 from loopsheet import Method, fit, given, let, measured, unknown
 from loopsheet.derivations.equation import Derivation, Equation, Kind, Ledger, Step
 from loopsheet.derivations.least_squares import LeastSquares
@@ -282,7 +282,7 @@ def test_what_rows_do_not_tell_has_no_value(model: str, rows: int, told: str) ->
     lines = ["x, y = measured('1', 'x'), measured('1', 'y')"]
     lines += [f"{name} = unknown('{name}', start=1)" for name in names]
     body = "".join(f"    {line}\n" for line in (*lines, f"f = fit(y, {model})"))
-    scope = dict(vars(loopsheet.report.method))
+    scope = dict(vars(loopsheet.report.method.words))
     exec(f"class Few(Method):\n{body}", scope)
     method: Any = scope["Few"]
     x = np.array([0.1, 0.4, 0.9, 1.3, 1.8, 2.5])[:rows]

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import loopsheet
-from loopsheet.report import method
 from loopsheet.report.build import build
 from loopsheet.report.charts import BARS
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.method import words
 from loopsheet.report.study import Study
 from loopsheet.report.views import charts
 
@@ -142,4 +142,4 @@ def test_what_is_refused_of_a_fit_of_groups(old: str, new: str, said: str) -> No
     assert METHOD.count(old) == 1
     code = METHOD.replace(old, new).replace("Method, fit", "Method, fit, mean")
     with pytest.raises(SheetError, match=re.escape(said)):
-        exec(code, {**vars(method), **vars(loopsheet)})
+        exec(code, {**vars(words), **vars(loopsheet)})

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import loopsheet
-from loopsheet.report import method
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact, numpy
+from loopsheet.report.method import words
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 
@@ -38,7 +38,7 @@ class Crossed(Method, headline="scatter"):
 
 
 def sheet() -> Sheet:
-    names: dict[str, Any] = {**vars(method), **vars(loopsheet)}
+    names: dict[str, Any] = {**vars(words), **vars(loopsheet)}
     exec(CROSSED, names)
     found: Sheet = names["Crossed"].workbook.sheet(())
     return found

@@ -55,11 +55,10 @@ AUTHOR |= rooms("sheet", "charts", "workbook")
 DECLARED = AUTHOR | rooms("cells")
 # The words of methods and what is made of their lines, from the ground up.
 METHOD = [
-    f"report.{name}"
+    f"report.method.{name}"
     for name in (
-        *("codata", "differences", "method_lines", "fitted", "method_places", "method_body"),
-        *("method_algebra", "method_made", "method_errors", "method_ledger", "method_shown"),
-        *("method_class", "method"),
+        *("codata", "temperatures", "lines", "fitted", "places", "body", "algebra", "made", "errors"),
+        *("ledger", "shown", "declaring", "words"),
     )
 ]
 
@@ -143,7 +142,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     **{
         part: (
             DECLARED | {*METHOD[: place + 1], "derivations"} | rooms("inputs.keys"),
-            ALGEBRA | ({"scipy"} if part == "report.codata" else set()),
+            ALGEBRA | ({"scipy"} if part == "report.method.codata" else set()),
         )
         for place, part in enumerate(METHOD)
     },

@@ -14,13 +14,13 @@ import pytest
 from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
-import loopsheet.report.method
+import loopsheet.report.method.words
 from loopsheet import Method, count, given, let, load, mean, measured, median, root, total, unknown
 from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.method_lines import exact
+from loopsheet.report.method.lines import exact
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
@@ -274,7 +274,7 @@ def test_sums_and_extremes_may_be_called_as_in_python() -> None:
 def test_what_has_no_order_over_rows(formula: str, said: str) -> None:
     body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    y = let({formula}, 'y')\n"
     with pytest.raises(SheetError, match=re.escape(said)):
-        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
+        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method.words)})
 
 
 @pytest.mark.parametrize(
@@ -295,7 +295,7 @@ def test_where_order_may_not_stand(lines: str, said: str) -> None:
     with pytest.raises(SheetError, match=re.escape(said)):
         exec(
             f"class Wrong(Method):\n{body}\nWrong.workbook.sheet(frozenset())",
-            {**vars(loopsheet.report.method), "sqrt": sqrt},
+            {**vars(loopsheet.report.method.words), "sqrt": sqrt},
         )
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import loopsheet
-from loopsheet.report import method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 from loopsheet.report.document.material import Material
+from loopsheet.report.method import words
 from loopsheet.report.study import Study
 
 SEN = """
@@ -134,4 +134,4 @@ def test_a_table_comes_first_and_the_rest_follows(tmp_path: Path) -> None:
 )
 def test_what_is_refused_of_pairs_and_tables(line: str, said: str) -> None:
     with pytest.raises(SheetError, match=re.escape(said)):
-        exec(f"{SEN}    {line}\n", {**vars(method), **vars(loopsheet)})
+        exec(f"{SEN}    {line}\n", {**vars(words), **vars(loopsheet)})

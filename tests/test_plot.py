@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-import loopsheet.report.method
+import loopsheet.report.method.words
 from loopsheet import Method, drawing, let, mean, measured, plot, trace
 from loopsheet.report.charts import BLUE, Series
 from loopsheet.report.column import SheetError
@@ -116,4 +116,4 @@ def test_how_it_looks_is_said() -> None:
 def test_what_cannot_be_plotted(line: str, said: str) -> None:
     body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    {line}\n"
     with pytest.raises(SheetError, match=re.escape(said)):
-        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method)})
+        exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method.words)})

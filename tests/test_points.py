@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import loopsheet
-from loopsheet.report import method
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.method import words
 from loopsheet.report.study import Study
 
 METHOD = """
@@ -132,6 +132,6 @@ def test_figures_have_them_and_no_table_does(folder: Path) -> None:
     ],
 )
 def test_what_is_refused(line: str, said: str) -> None:
-    names: dict[str, Any] = {**vars(method), **vars(loopsheet)}
+    names: dict[str, Any] = {**vars(words), **vars(loopsheet)}
     with pytest.raises(SheetError, match=re.escape(said)):
         exec(f"{METHOD}    {line}\n", names)

@@ -288,7 +288,7 @@ def test_two_tables_are_two_files_and_one_of_words_alone_is_empty(tmp_path: Path
 )
 def test_a_line_that_takes_rows_for_others_is_refused(line: str, said: str) -> None:
     code = (
-        "from loopsheet.report.method import *\n"
+        "from loopsheet.report.method.words import *\n"
         "class Two(Method, source='', rows='standards'):\n"
         "    samples = rows('samples')\n"
         "    y = measured('1', 'signal')\n"

@@ -25,7 +25,7 @@ from ...derivations.soft_impact import CP, XM, XP, E, V
 from ...derivations.symbols import VOCABULARY as WORDS
 from ...derivations.symbols import k, p
 from ..charts import BLUE, VERMILION
-from ..method import (
+from ..method.words import (
     Method,
     by,
     drawing,

@@ -7,7 +7,7 @@ from ...derivations import power_law_fit as line
 from ...derivations import soft_impact as model
 from ...derivations.soft_impact import LEDGER, XM, E, V
 from ...derivations.symbols import VOCABULARY, k, q
-from ..method import Method, by, given, measured, standing
+from ..method.words import Method, by, given, measured, standing
 from ..sheet import Sheet
 from ..workbook import Design
 

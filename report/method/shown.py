@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from .charts import COLOURS, INK, STYLES, Chart, Series, series_of
-from .column import Column, Given, SheetError
-from .messages.errors import listing, sentence_case
-from .method_errors import current, told_together
-from .named import name_of
-from .workbook import FigureSpec, TableSpec
+from ..charts import COLOURS, INK, STYLES, Chart, Series, series_of
+from ..column import Column, Given, SheetError
+from ..messages.errors import listing, sentence_case
+from ..named import name_of
+from ..workbook import FigureSpec, TableSpec
+from .errors import current, told_together
 
 __all__ = ["drawing", "plot", "table", "trace"]
 

@@ -14,12 +14,12 @@ from typing import Any, ParamSpec, TypeVar, cast
 
 from sympy import Basic, Symbol
 
-from ..derivations.equation import Ledger
-from .cells.units import check_column
-from .column import SheetError
-from .messages.errors import suggest
-from .method_body import MethodBody
-from .method_lines import ComputedLine, Declaration, FitLine, PointsLine, TakenLine
+from ...derivations.equation import Ledger
+from ..cells.units import check_column
+from ..column import SheetError
+from ..messages.errors import suggest
+from .body import MethodBody
+from .lines import ComputedLine, Declaration, FitLine, PointsLine, TakenLine
 
 __all__ = ["CURRENT", "WatchedBody", "current", "named_next", "told_together"]
 

@@ -12,19 +12,19 @@ from typing import Any
 
 from sympy import Abs, Expr, Indexed, IndexedBase, Integer, Min, Rational, Sum, Symbol, diff
 
-from ..derivations.least_squares import FitQuantity, LeastSquares
-from ..derivations.reductions import Greatest, Least
-from ..derivations.unit_text import parse_open
-from ..derivations.vocabulary import spelt
-from .axis import Axis, CountedAxis, GroupAxis, RepeatAxis
-from .cells.units import named_unit_of
-from .charts import VERMILION, Chart, Series, drawn
-from .column import Column, Formula, Given, Iterated, SheetError
-from .messages.errors import sentence_case
-from .method_lines import spaced
-from .named import member, name_of
-from .quantity import Bounds
-from .workbook import Curve, FigureSpec
+from ...derivations.least_squares import FitQuantity, LeastSquares
+from ...derivations.reductions import Greatest, Least
+from ...derivations.unit_text import parse_open
+from ...derivations.vocabulary import spelt
+from ..axis import Axis, CountedAxis, GroupAxis, RepeatAxis
+from ..cells.units import named_unit_of
+from ..charts import VERMILION, Chart, Series, drawn
+from ..column import Column, Formula, Given, Iterated, SheetError
+from ..messages.errors import sentence_case
+from ..named import member, name_of
+from ..quantity import Bounds
+from ..workbook import Curve, FigureSpec
+from .lines import spaced
 
 __all__ = ["DeclaredFit", "stated_of", "told_apart"]
 

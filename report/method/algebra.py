@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 from sympy import Basic, Dummy, Expr, Float, Indexed, Rational, Symbol
 
-from ..derivations.equation import Derivation, Equation
-from ..derivations.grounds import says
-from ..derivations.reductions import REDUCTIONS
-from .cells.units import unit_of
-from .column import Column, Formula, Given, SheetError
-from .named import name_of
-from .workbook import Claimed
+from ...derivations.equation import Derivation, Equation
+from ...derivations.grounds import says
+from ...derivations.reductions import REDUCTIONS
+from ..cells.units import unit_of
+from ..column import Column, Formula, Given, SheetError
+from ..named import name_of
+from ..workbook import Claimed
 
 if TYPE_CHECKING:
-    from .method_body import MethodBody
+    from .body import MethodBody
 
 __all__ = ["claimed", "derivative"]
 

@@ -20,18 +20,18 @@ from typing import Any
 
 from sympy import Expr, Symbol, sympify
 
-from ..derivations.equation import Equation
-from ..derivations.vocabulary import Quantity
-from .axis import RepeatAxis
-from .cells.units import named_unit_of
-from .charts import drawn
-from .column import Column, Formula, Given, Iterated, Limit, Root, SheetError
+from ...derivations.equation import Equation
+from ...derivations.vocabulary import Quantity
+from ..axis import RepeatAxis
+from ..cells.units import named_unit_of
+from ..charts import drawn
+from ..column import Column, Formula, Given, Iterated, Limit, Root, SheetError
+from ..named import name_of
+from ..quantity import Bounds
+from .body import MethodBody
+from .errors import current, named_next, told_together
 from .fitted import stated_of
-from .method_body import MethodBody
-from .method_errors import current, named_next, told_together
-from .method_lines import TakenLine, stated_unit
-from .named import name_of
-from .quantity import Bounds
+from .lines import TakenLine, stated_unit
 
 __all__ = ["by", "expected", "numbered", "sketch", "standing", "uncertainty"]
 

@@ -11,12 +11,12 @@ from sympy import Expr, Float, Function, Rational, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 from sympy.core.relational import Relational
 
-from ..derivations.equation import Equation
-from ..derivations.reductions import Member
-from ..derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
-from ..derivations.vocabulary import Quantity, amiss
-from .column import Limit, SheetError
-from .quantity import Bounds, behind
+from ...derivations.equation import Equation
+from ...derivations.reductions import Member
+from ...derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
+from ...derivations.vocabulary import Quantity, amiss
+from ..column import Limit, SheetError
+from ..quantity import Bounds, behind
 
 __all__ = [
     "FUNCTIONS",

@@ -14,11 +14,11 @@ import mpmath
 from sympy import Expr, Float, Indexed, Integer, Rational, Symbol
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
-from ..derivations.evaluation import UNDEFINED, NotEvaluable, Tape
-from ..derivations.reductions import Member
-from .axis import Axis
-from .column import Column, Formula, shown_in
-from .named import name_of
+from ...derivations.evaluation import UNDEFINED, NotEvaluable, Tape
+from ...derivations.reductions import Member
+from ..axis import Axis
+from ..column import Column, Formula, shown_in
+from ..named import name_of
 
 __all__ = ["is_difference"]
 

@@ -6,12 +6,12 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from ..derivations.equation import Ledger
-from .column import SheetError
-from .method_body import MethodBody
-from .method_errors import CURRENT, WatchedBody
-from .method_made import workbook_of
-from .workbook import Workbook
+from ...derivations.equation import Ledger
+from ..column import SheetError
+from ..workbook import Workbook
+from .body import MethodBody
+from .errors import CURRENT, WatchedBody
+from .made import workbook_of
 
 __all__ = ["Method"]
 

@@ -6,15 +6,15 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ..derivations.equation import Ledger
-from ..derivations.vocabulary import Quantity, Vocabulary, spelt
-from .axis import Axis
-from .charts import Drawn
-from .column import Column, SheetError
-from .method_body import MethodBody
-from .quantity import Bounds
-from .sheet import Sheet
-from .workbook import Measured, Parameter, RowTable, Workbook, tables_of
+from ...derivations.equation import Ledger
+from ...derivations.vocabulary import Quantity, Vocabulary, spelt
+from ..axis import Axis
+from ..charts import Drawn
+from ..column import Column, SheetError
+from ..quantity import Bounds
+from ..sheet import Sheet
+from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
+from .body import MethodBody
 
 __all__ = ["workbook_of"]
 

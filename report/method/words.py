@@ -19,19 +19,19 @@ from typing import Any, cast
 from sympy import Expr, false, sympify, true
 from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, StrictLessThan
 
-from ..derivations.reductions import Median
-from ..derivations.vocabulary import Quantity
-from . import method_algebra
-from .axis import plural
+from ...derivations.reductions import Median
+from ...derivations.vocabulary import Quantity
+from ..axis import plural
+from ..column import SheetError
+from ..named import name_of
+from ..quantity import Bounds, behind
+from . import algebra
 from .codata import adjusted
-from .column import SheetError
-from .method_class import Method
-from .method_errors import current, named_next, told_together
-from .method_ledger import by, expected, numbered, sketch, standing, uncertainty
-from .method_lines import ComputedLine, FitLine, InputLine, PointsLine, UnknownLine, exact
-from .method_shown import drawing, plot, table, trace
-from .named import name_of
-from .quantity import Bounds, behind
+from .declaring import Method
+from .errors import current, named_next, told_together
+from .ledger import by, expected, numbered, sketch, standing, uncertainty
+from .lines import ComputedLine, FitLine, InputLine, PointsLine, UnknownLine, exact
+from .shown import drawing, plot, table, trace
 
 __all__ = [
     "Method",
@@ -422,7 +422,7 @@ def derivative(formula: Any, by: Any) -> Expr:
     SheetError
         A root, a fit or a sum over rows rests on it: that has no formula to put in.
     """
-    return method_algebra.derivative(current(), exact(formula), exact(by))
+    return algebra.derivative(current(), exact(formula), exact(by))
 
 
 def rows(name: str, *, index: str = "", size: str = "") -> Any:
@@ -556,7 +556,7 @@ def claim(
     label : str
         The number of its equation; its place among the equations, without.
     """
-    method_algebra.claimed(current(), exact(left), exact(right), meaning, because, from_, label)
+    algebra.claimed(current(), exact(left), exact(right), meaning, because, from_, label)
 
 
 def _no_end(said: Any) -> SheetError:

@@ -10,17 +10,20 @@ from typing import Any
 
 from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, sympify
 
-from ..derivations.equation import Derivation, Equation, Kind, Ledger
-from ..derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
-from ..derivations.unit_text import of_differences
-from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
-from .cells.units import as_its_parts
-from .column import Column, Formula, Given, Reference, Root, SheetError, shown_in
-from .differences import is_difference
+from ...derivations.equation import Derivation, Equation, Kind, Ledger
+from ...derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
+from ...derivations.unit_text import of_differences
+from ..axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
+from ..cells.units import as_its_parts
+from ..column import Column, Formula, Given, Reference, Root, SheetError, shown_in
+from ..inputs.keys import fixed
+from ..messages.errors import listing
+from ..named import member, name_of, references, summed_over
+from ..quantity import Bounds, behind
+from ..sheet import Sheet
+from ..workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 from .fitted import DeclaredFit, told_apart
-from .inputs.keys import fixed
-from .messages.errors import listing
-from .method_lines import (
+from .lines import (
     ComputedLine,
     Declaration,
     FitLine,
@@ -39,11 +42,8 @@ from .method_lines import (
     unit_in_si,
     with_unit,
 )
-from .method_places import Optionals, Standing
-from .named import member, name_of, references, summed_over
-from .quantity import Bounds, behind
-from .sheet import Sheet
-from .workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
+from .places import Optionals, Standing
+from .temperatures import is_difference
 
 __all__ = ["MethodBody"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 
-from .column import SheetError
-from .messages.errors import listing
+from ..column import SheetError
+from ..messages.errors import listing
 
 __all__ = ["adjusted"]
 

@@ -9,12 +9,12 @@ from typing import Any
 from sympy import Basic, Indexed, Symbol
 from sympy.core.function import AppliedUndef
 
-from ..derivations.equation import Equation
-from .column import Column
-from .named import name_of
-from .quantity import Bounds
-from .sheet import Sheet
-from .workbook import Either
+from ...derivations.equation import Equation
+from ..column import Column
+from ..named import name_of
+from ..quantity import Bounds
+from ..sheet import Sheet
+from ..workbook import Either
 
 __all__ = ["Optionals", "Standing"]
 
