@@ -398,3 +398,18 @@ def test_limits_of_a_column_are_of_each_row_that_has_none_of_its_own() -> None:
     limits = [Limits(cell, None, None, Guard(), Location()) for cell in ("E", "E[2]", "m", "x")]
     cells = {"E": ("K", {(1,), (2,), (3,)}), "m": ("g", {()})}
     assert [each.address for each in of_every_row(limits, cells)] == ["E[1]", "E[3]", "E[2]", "m", "x"]
+
+
+def test_what_conforms_by_the_rule_and_more_likely_does_not_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wide, at_the_limit, sure = (
+        judged(value, u, "0", "10") for value, u in ((5.0, 20.0), (10.0, 1.0), (5.0, 1.0))
+    )
+    assert wide.decision is at_the_limit.decision is sure.decision is Decision.CONFORMS
+    assert [each.improbable for each in (wide, at_the_limit, sure)] == [True, False, False]
+    assert not judged(11.0, 20.0, "0", "10").improbable
+    main(["check", folder(tmp_path, '\n[limits]\n"x_p[1]" = "22.57 .. 22.61 um"\n')])
+    (line,) = (each for each in capsys.readouterr().out.splitlines() if "x_p[1] conforms" in each)
+    assert line.startswith("warning: ")
+    assert "so large that it is more likely outside of the tolerance limits (" in line

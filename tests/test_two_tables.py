@@ -11,13 +11,14 @@ import two_tables
 from two_tables import SAMPLES, SIGNALS, STANDARDS, TOML, U_SIGNALS, U_Y, C, Y, contents
 
 import loopsheet
-from loopsheet.report import build, method
+from loopsheet.report import build
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.inputs import Inputs
 from loopsheet.report.judge.sample import part
 from loopsheet.report.messages.errors import InputError
+from loopsheet.report.method import words
 from loopsheet.report.quantity import there
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
@@ -300,12 +301,12 @@ def test_a_line_that_takes_rows_for_others_is_refused(line: str, said: str) -> N
 
 
 def test_one_further_table_alone_is_written_as_the_only_one() -> None:
-    class One(method.Method, source=""):
+    class One(words.Method, source=""):
         """One."""
 
-        samples = method.rows("samples")
-        y = method.measured("1", "signal", of=samples)
-        z = method.let(method.mean(y), "mean")
+        samples = words.rows("samples")
+        y = words.measured("1", "signal", of=samples)
+        z = words.let(words.mean(y), "mean")
 
     workbook = One.workbook
     assert not workbook.several

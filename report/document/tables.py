@@ -302,7 +302,8 @@ class Tables:
         """The cells that have limits, and what the decision rule says of each."""
 
         def row(found: Conformity) -> dict[str, str]:
-            return {"state": "" if found.decision is Decision.CONFORMS else "unexpected"}
+            sure = found.decision is Decision.CONFORMS and not found.improbable
+            return {"state": "" if sure else "unexpected"}
 
         made = (
             _Made("result", lambda found: Code(found.budget.cell), "words"),

@@ -139,7 +139,9 @@ def of_limits(found: Conformity, report: Report) -> Check:
     tests = report.values.tests(cell)
     expected = any(each.covers(cell.name, cell.label, tests) for each in report.inputs.expected)
     passed = found.decision is Decision.CONFORMS or (cell.value is None and expected)
-    return Check(CONFORMITY, found.limits.address, passed, f"{sentence(found)} ({told})", found.limits.at)
+    note = "warning" if found.improbable else ""
+    said = f"{sentence(found)} ({told})"
+    return Check(CONFORMITY, found.limits.address, passed, said, found.limits.at, note=note)
 
 
 def _otherwise(comparison: Comparison) -> str:

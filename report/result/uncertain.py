@@ -270,6 +270,10 @@ class Decision(StrEnum):
     NONE = "no decision"
 
 
+MORE_LIKELY = 0.505
+"""A specific risk from here on is more than an even one, which a value has that lies on a limit."""
+
+
 @dataclass(frozen=True)
 class Conformity:
     """A cell beside its limits."""
@@ -304,8 +308,18 @@ class Conformity:
         return self.probability if self.decision is Decision.DOES_NOT else None
 
     @property
+    def improbable(self) -> bool:
+        """Whether it conforms by the rule, which asks for no uncertainty, and more likely does not."""
+        return self.decision is Decision.CONFORMS and self.below + self.above > MORE_LIKELY
+
+    @property
     def because(self) -> str:
         """Why it is decided so."""
+        if self.improbable:
+            return (
+                "it lies within the acceptance limits, but its uncertainty is so large that it is more "
+                "likely outside of the tolerance limits"
+            )
         if self.decision is Decision.CONFORMS:
             return "it lies within the acceptance limits"
         if self.decision is Decision.DOES_NOT:
