@@ -137,3 +137,47 @@ def test_where_nothing_is_least_there_is_no_number(tmp_path: Path) -> None:
     assert cell.value is None
     assert "begin nearer" in cell.reason
     assert study.prepared.sheet["A"].rule.start == study.inputs.workbook.sheet(frozenset())["A"].rule.start
+
+
+# D G Watts' data of an enzyme: N R Draper and H Smith, Applied Regression Analysis; in R as "Puromycin".
+ENZYME = """from loopsheet import Method, fit, measured, unknown
+
+
+class Kinetics(Method, headline="K_M"):
+    S = measured("mmol/L", "substrate", positive=True)
+    v = measured("umol/(L*min)", "rate")
+    V = unknown("limiting rate", "umol/(L*min)", start={V}, positive=True)
+    K_M = unknown("Michaelis constant", "mmol/L", start={K_M}, positive=True)
+    curve = fit(v, V * S / (K_M + S))
+"""
+RATES = """S [mmol/L],v [umol/(L*min)]
+0.02,76
+0.02,47
+0.06,97
+0.06,107
+0.11,123
+0.11,139
+0.22,159
+0.22,152
+0.56,191
+0.56,201
+1.10,207
+1.10,200
+"""
+STATED = '[uncertainty]\nS = "exact"\nv = "u = 11"\n'
+
+
+def test_draws_begin_at_the_estimate_and_not_where_their_author_did(tmp_path: Path) -> None:
+    """From far away some of them would not settle, and those are not like the others."""
+    drawn = []
+    for name, start in {"near": (210, 0.06), "far": (100, 1)}.items():
+        code = ENZYME.format(V=start[0], K_M=start[1])
+        folder = tmp_path / name
+        folder.mkdir()
+        write(folder, code, RATES, STATED)
+        report = Study(folder).computed
+        budget = Spread(report.inputs, report.values).budget("K_M", 0)
+        drawn.append(draw(report.inputs, report.values, budget, 20_000))
+    near, far = drawn
+    assert near.lost == far.lost == 0
+    assert (far.u, *far.symmetric) == pytest.approx((near.u, *near.symmetric), rel=1e-9)

@@ -111,7 +111,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         NUMERIC,
     ),
     "report.uncertainty": (
-        DECLARED | rooms("engines", "inputs", "judge", "result", "uncertainty"),
+        DECLARED | rooms("engines", "fitting", "inputs", "judge", "result", "uncertainty"),
         {"numpy", "scipy"},
     ),
     "report.referee": (

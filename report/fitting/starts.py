@@ -27,7 +27,7 @@ from ..workbook import Curve
 from .least_squares import least_squares
 from .triangle import Array
 
-__all__ = ["begun"]
+__all__ = ["begun", "begun_at"]
 
 Labels = Mapping[str, Sequence[int]]
 
@@ -58,6 +58,20 @@ def begun(sheet: Sheet, curves: Iterable[Curve], labels: Labels, data: Mapping[s
     return sheet
 
 
+def begun_at(sheet: Sheet, start: Mapping[str, float]) -> Sheet:
+    """The sheet with parameters of fits begun at finite numbers, of as many digits as a spreadsheet reads.
+
+    `start`: in SI, by name.
+    """
+
+    def begin(column: Column) -> Column:
+        if column.name not in start:
+            return column
+        return replace(column, rule=replace(_rule(column), start=Rational(f"{start[column.name]:.12g}")))
+
+    return Sheet(tuple(map(begin, sheet.columns)))
+
+
 def _passes(values: Values, loop: Loop) -> float:
     """How many passes a loop takes; infinity if it does not settle."""
     lost = any(np.any(values.status[column.name] == Status.NOROOT) for column in loop.iterated)
@@ -67,19 +81,10 @@ def _passes(values: Values, loop: Loop) -> float:
 def _better(
     sheet: Sheet, loop: Loop, values: Values, start: Mapping[str, float], data: Mapping[str, Any]
 ) -> tuple[Sheet, Values]:
-    """A sheet and its values, or those from another start if its passes are fewer.
-
-    A start has as many digits as a spreadsheet reads.
-    """
+    """A sheet and its values, or those from another start if its passes are fewer."""
     if not all(map(math.isfinite, start.values())):
         return sheet, values
-
-    def begin(column: Column) -> Column:
-        if column.name not in start:
-            return column
-        return replace(column, rule=replace(_rule(column), start=Rational(f"{start[column.name]:.12g}")))
-
-    other = Sheet(tuple(map(begin, sheet.columns)))
+    other = begun_at(sheet, start)
     found = evaluate(other, values.given_labels, data)
     return (other, found) if _passes(found, loop) < _passes(values, loop) else (sheet, values)
 

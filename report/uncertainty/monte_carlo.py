@@ -17,11 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cells.values import Status, Values, other_rows
+from ..column import Column
 from ..distribution import DIVISORS, PARTS, Shape
 from ..engines.elementary import log
 from ..engines.intervals import Intervals
 from ..engines.numpy import Laid, Program, evaluate
 from ..engines.numpy_beside import BESIDE, Beside
+from ..fitting.starts import begun_at
 from ..inputs.inputs import Inputs
 from ..judge.enclosure import Enclosure
 from ..laws import Samples
@@ -149,7 +151,7 @@ class _Draws:
 
     def __init__(self, inputs: Inputs, values: Values, name: str, seed: int) -> None:
         column = values.sheet[name]
-        self.sheet, self.estimate = Sheet((*values.sheet.ancestors(column), column)), values
+        self.sheet, self.estimate = _begun(inputs, values, (*values.sheet.ancestors(column), column)), values
         self.labels = values.given_labels
         self.program, self.name = Program.of(self.sheet), name
         self.generator = np.random.Generator(np.random.PCG64(seed))
@@ -264,6 +266,18 @@ class _Draws:
         for others in other_rows(values, self.estimate).values():
             there = there & ~others
         return np.broadcast_to(own, size), np.broadcast_to(there, size)
+
+
+def _begun(inputs: Inputs, values: Values, columns: Sequence[Column]) -> Sheet:
+    """A sheet whose fits begin at the estimate: draws lie about it, their author's start may be far."""
+    fitted = {name for curve in inputs.workbook.curves for name in curve.fitted}
+    found = {
+        each.name: values.scalar(each.name)
+        for each in columns
+        if each.name in fitted and each.name in values.sheet.loop_of
+    }
+    there = {name: value for name, value in found.items() if math.isfinite(value)}
+    return begun_at(Sheet(tuple(columns)), there)
 
 
 # --- what draws tell ---------------------------------------------------------------------------------------
