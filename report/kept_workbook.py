@@ -47,7 +47,7 @@ class _Told:
     functions: tuple[str, ...]
 
 
-_EMPTY = ("curves", "claims", "models")
+_EMPTY = ("curves", "means", "claims", "models")
 """What is no data: a workbook that has some is imported."""
 _FUNCTIONS = ("ledger", "sheet", "check_parameters", "drawn", "drawings", "card_constants", "design")
 

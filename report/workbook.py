@@ -283,6 +283,9 @@ class Workbook:
     """The sums of squares to be no larger and no smaller than chance makes them."""
     curves: tuple[Curve, ...] = ()
     """The curves whose residuals are to be no larger and no smaller than their uncertainties make them."""
+    means: tuple[tuple[str, str], ...] = ()
+    """Results that are the mean of a column over the rows of the data, each with that column: if these are of
+    one quantity, they differ by no more than their uncertainties make them."""
     claims: tuple[Claimed, ...] = ()
     """What is to hold of its cells, whatever is measured."""
     constants: frozenset[str] = frozenset()

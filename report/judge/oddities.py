@@ -71,6 +71,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         SQUARES: [
             *(each.name for each in workbook.squares if each.asked),
             *(each.name for each in workbook.curves),
+            *(name for name, _ in workbook.means),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
@@ -164,6 +165,7 @@ class _Oddities:
         yield from map(self.of_uncertainty, _stated(self.sheet, self.inputs))
         yield from (self.of_squares(each) for each in self.report.workbook.squares if each.asked)
         yield from map(self.of_curve, self.report.workbook.curves)
+        yield from (self.of_mean(*each) for each in self.report.workbook.means)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_words(table, each) for table in self.inputs.tables for each in table.table.groups)
         yield from map(self.of_taken, _taken(self.inputs))
@@ -407,6 +409,28 @@ class _Oddities:
         shown = self.report.shown[curve.scatter]
         size = rounded(shown.of(self.values.scalar(curve.scatter)), 2).plain + behind(shown.unit)
         return f'{told}: {curve.observed} = "u = {size}, dof = {known.dof}" under [uncertainty] says so'
+
+    def of_mean(self, name: str, of: str) -> Check:
+        """Whether what a result is the mean of differs by no more than its uncertainties make it."""
+        known, every = self.report.uncertain().misfits.get(name), self.values.value[of]
+        found = f"{name} is the mean of {np.count_nonzero(np.isfinite(every))} {of}"
+        if known is None or not known.is_stated:
+            said = f"{found}, of which no uncertainty is stated that could say how far they differ"
+            return Check(SQUARES, name, True, said, self.inputs.place)
+        found += f": chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
+        large, cell = tail(known.chi2, known.dof, known.known_by), self.values.cell(name)
+        if large >= RARE:
+            return Check(SQUARES, name, True, f"{found}, which is what chance makes", self.inputs.place)
+        about, shown = every - self.values.scalar(name), self.report.shown[name]
+        far = address(of, self.values.labels(self.sheet[of])[int(np.nanargmax(np.abs(about)))])
+        scatter = math.sqrt(float(np.nanvar(every, ddof=1)) / np.count_nonzero(np.isfinite(every)))
+        size = rounded(shown.of(scatter) - shown.of(0.0), 2).plain + behind(shown.unit)
+        said = (
+            f"{found}; the probability of so much is {probability(large)}: one of them is wrong, they are of "
+            f"several quantities, or their standard uncertainties are understated; {far} is farthest; by "
+            f"their scatter u of {name} is {size}"
+        )
+        return self.check(SQUARES, name, said, _Odd(self, [cell], "is improbable"))
 
     def by_chance(
         self, cell: Cell, found: str, axis: str, large: float, small: float, instead: str = ""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+
+from sympy import Sum
 
 from ...derivations.equation import Ledger
 from ...derivations.vocabulary import Quantity, Vocabulary, spelt
 from ..axis import Axis
 from ..charts import Drawn
-from ..column import Column, SheetError
+from ..column import Column, Formula, SheetError
 from ..quantity import Bounds
 from ..sheet import Sheet
 from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
@@ -50,6 +52,16 @@ def _table_of(axis: Axis, body: MethodBody, columns: Sequence[Measured]) -> RowT
     numbered = enumerate(rows, start=1)
     example = ((str(place), *(_words(body, place) if groups else ()), *row) for place, row in numbered)
     return RowTable(axis.name, axis.row, 1, groups, (head, *example))
+
+
+def _means(body: MethodBody, results: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The results that are means of a column over the rows of the data, with that column."""
+    of_rows = [each for each in body.columns.values() if each.axis in body.row_axes]
+    means = {Sum(c.cell, (c.axis.index, 1, c.axis.size)) / c.axis.size: c.name for c in of_rows if c.axis}
+    for name in results:
+        rule = body.columns[name].rule
+        if isinstance(rule, Formula) and rule.expression in means:
+            yield name, means[rule.expression]
 
 
 def workbook_of(
@@ -110,6 +122,7 @@ def workbook_of(
         row=only.row,
         least=only.least,
         curves=tuple(body.curves),
+        means=tuple(_means(body, tuple(headline) or tuple(last))),
         claims=tuple(body.claims),
         constants=frozenset(body.constants),
         margins=body.margins,

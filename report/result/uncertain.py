@@ -349,7 +349,7 @@ class Influence:
 
 @dataclass(frozen=True)
 class Misfit:
-    """What the residuals of a curve come to beside the standard uncertainties that were known before."""
+    """What residuals from a curve or a mean come to beside standard uncertainties known before."""
 
     chi2: float
     """The least sum of squares of errors, each over its standard uncertainty, that make these residuals."""
@@ -382,7 +382,8 @@ class Uncertainties:
     second: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     """Of shape (rows,), by column; the variance that terms of second order make; 0 if they do not count."""
     misfits: Mapping[str, Misfit] = field(default_factory=dict)
-    """Of the workbook's curves, by the cells of their sums of squares; those that are known."""
+    """Of the workbook's curves and means, by the cells of their sums of squares or their own; those that are
+    known."""
     rough: Mapping[str, bool] = field(default_factory=dict)
     """Columns of which derivatives jump: where rows change places (true), or at corners of a function."""
 

@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 
 NOTHING = 1e-9
 """An eigenvalue that is a smaller part of the largest one is what rounding leaves of none."""
+ROUNDING = 1e-13
+"""And so is one that is smaller than this: errors that all rows share move no residual."""
 
 
 def least_squares_of_errors(
@@ -35,7 +37,7 @@ def least_squares_of_errors(
     Returns
     -------
     float, int
-        The sum, and its degrees of freedom.
+        The sum, and its degrees of freedom: 0 where the errors move no residual.
 
     Examples
     --------
@@ -49,6 +51,6 @@ def least_squares_of_errors(
     Source: C. R. Rao, Linear Statistical Inference and Its Applications, 1973, 4i and 8a.
     """
     found, across = np.linalg.eigh(covariance / np.outer(size, size))
-    kept = (found > NOTHING * found[-1]) & (np.arange(len(found)) >= fitted)
+    kept = (found > max(NOTHING * found[-1], ROUNDING)) & (np.arange(len(found)) >= fitted)
     along = across[:, kept].T @ (residuals / size)
     return float(np.sum(along**2 / found[kept])), int(np.count_nonzero(kept))

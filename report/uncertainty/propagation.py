@@ -34,7 +34,7 @@ from ..result.uncertain import (
     Uncertainties,
 )
 from ..sheet import Column, Given, PairAxis, RepeatAxis
-from ..workbook import Curve, SquareSum
+from ..workbook import Curve, SquareSum, Workbook
 from .conformity import conformity
 from .coverage import assigned, coverage
 from .freedom import of_sum, with_correlated
@@ -371,16 +371,34 @@ class Spread:
 
         None where nothing is left over, where a row has no uncertainty, and where there are too many rows.
         """
-        rows = np.flatnonzero(self.values.status[curve.residual] == Status.OK)
-        if not len(curve.fitted) < len(rows) <= MOST_ROWS or not self.knows(curve.residual):
+        rows, fitted = self._valued(curve.residual), len(curve.fitted)
+        if not fitted < len(rows) <= MOST_ROWS or not self.knows(curve.residual):
             return None
-        own, observed = ([(name, int(row)) for row in rows] for name in (curve.residual, curve.observed))
+        residuals = self.values.value[curve.residual][rows]
+        own = self.covariance([(curve.residual, row) for row in rows])
+        return self._misfit(residuals, own, [(curve.observed, row) for row in rows], fitted)
+
+    def misfit_of_mean(self, name: str) -> Misfit | None:
+        """The same of a column about its mean."""
+        rows = self._valued(name)
+        if not 1 < len(rows) <= MOST_ROWS or not self.knows(name):
+            return None
+        cells, about = [(name, row) for row in rows], np.eye(len(rows)) - 1 / len(rows)
+        residuals = about @ self.values.value[name][rows]
+        return self._misfit(residuals, about @ self.covariance(cells) @ about, cells, 1)
+
+    def _valued(self, name: str) -> list[int]:
+        """The rows that have a value."""
+        return np.flatnonzero(self.values.status[name] == Status.OK).tolist()
+
+    def _misfit(
+        self, residuals: Array, covariance: Array, observed: Sequence[tuple[str, int]], fitted: int
+    ) -> Misfit | None:
         moved = self.contributions(observed)
         size = np.sqrt(self._variance(moved))
         if not np.all(size > 0):
             return None
-        residuals = self.values.value[curve.residual][rows]
-        chi2, dof = least_squares_of_errors(residuals, self.covariance(own), size, len(curve.fitted))
+        chi2, dof = least_squares_of_errors(residuals, covariance, size, fitted)
         each = zip(moved, size.tolist(), strict=True)
         known_by = min(of_sum(self.sources, own, self._pairs, u)[1] for own, u in each)
         moving = np.any(moved != 0, axis=0)
@@ -425,6 +443,11 @@ def _least(column: Column) -> float:
     return 0.0 if column.nonnegative else -math.inf
 
 
+def _misfits(spread: Spread, workbook: Workbook) -> Iterator[tuple[str, Misfit | None]]:
+    yield from ((curve.name, spread.misfit(curve)) for curve in workbook.curves)
+    yield from ((name, spread.misfit_of_mean(of)) for name, of in workbook.means)
+
+
 def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:
     """The standard uncertainty of every cell that is listed, and the budgets of some.
 
@@ -462,6 +485,6 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         tuple(map(spread.conformity, inputs.limits)),
         spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
         {name: second for name, (_, second) in variances.items()},
-        {each.name: found for each in inputs.workbook.curves if (found := spread.misfit(each))},
+        {name: found for name, found in _misfits(spread, inputs.workbook) if found},
         spread.second.rough if spread.second else {},
     )
