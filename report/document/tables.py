@@ -305,19 +305,20 @@ class Tables:
             sure = found.decision is Decision.CONFORMS and not found.improbable
             return {"state": "" if sure else "unexpected"}
 
+        every = self.report.uncertain().conformities
+        rules = [found.limits.guard for found in every]
+        guarded = any(rule.draws_in for rule in rules)
         made = (
             _Made("result", lambda found: Code(found.budget.cell), "words"),
             _Made("limits", self._tolerance, "words", 0.16),
-            _Made("guard band", self._guard, "words"),
-            _Made("acceptance limits", self._accepted, "words", 0.16),
+            *([_Made("guard band", self._guard, "words")] * guarded),
+            *([_Made("acceptance limits", self._accepted, "words", 0.16)] * guarded),
             _Made("decision", lambda found: str(found.decision), "words"),
             _Made("conformance probability", lambda found: _whole(conforming(found)), "words", 0.12),
             _Made("specific risk", lambda found: _whole(risk(found)), "words", 0.14),
         )
-        every = self.report.uncertain().conformities
-        rules = [found.limits.guard for found in every]
         drawn = "acceptance limits are the limits, drawn in by the guard band"
-        told = drawn if any(rule.draws_in for rule in rules) else "simple acceptance, without a guard band"
+        told = drawn if guarded else "simple acceptance, without a guard band"
         levels = dict.fromkeys(f"{100 * rule.level:.12g}" for rule in rules if rule.times)
         of_share = f", a share of U for {enumerated(levels)}\u00a0%" if levels else ""
         caption = (Strong(("Conformity with limits.",)), f" Decision rule (JCGM 106): {told}{of_share}")
