@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from .archive.crate import added
 from .files.manifest import manifest_of
 from .inputs.folders import INPUTS, holds, is_report, output, told
-from .machine.background import Background, Later
+from .machine.background import Background, LateArgument
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
@@ -207,7 +207,7 @@ def _made(
         proving = None if study.are_proved() else running.enter_context(Background(_proofs, study.recipe))
         refereeing = None
         if not study.is_refereed():
-            refereeing = running.enter_context(Background(_refereed, study.recipe, Later()))
+            refereeing = running.enter_context(Background(_refereed, study.recipe, LateArgument()))
         formats = _possible(study.prepared, formats, tell)
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
@@ -252,7 +252,7 @@ def _proofs(recipe: Recipe) -> dict[str, Any]:
     return Study.of(recipe).proof_data
 
 
-def _refereed(recipe: Recipe, plain: Later[tuple[Any, ...]]) -> tuple[Referee, tuple[Comparison, ...]]:
+def _refereed(recipe: Recipe, plain: LateArgument[tuple[Any, ...]]) -> tuple[Referee, tuple[Comparison, ...]]:
     """In a process of its own: what the referee finds of values that are computed meanwhile."""
     from .cells.values import Values
     from .referee import judging  # noqa: F401 - takes long, and needs no values

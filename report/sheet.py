@@ -18,7 +18,7 @@ from .partly import partly
 from .quantity import Bounds
 
 if TYPE_CHECKING:
-    from sympy import Expr, Symbol
+    from sympy import Symbol
     from sympy.logic.boolalg import Boolean
 
     from .named import Named
@@ -214,10 +214,6 @@ class Sheet:
     def named(self, column: Column) -> tuple[Reference, ...]:
         """The cells that a column's rule names, each once; those of columns declared first come first."""
         return self._named[column.name]
-
-    def references(self, column: Column) -> tuple[Expr, ...]:
-        """The cells that a column's rule names, ``x_p[i]`` and ``beta``, sorted by name."""
-        return tuple(sorted({reference.cell for reference in self.named(column)}, key=str))
 
     def precedents(self, column: Column) -> tuple[Column, ...]:
         """The columns that a column is computed from, in the order they were declared."""

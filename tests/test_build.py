@@ -23,7 +23,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.engines import excel_grid
 from loopsheet.report.files.manifest import read_manifest
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.machine.background import Later
+from loopsheet.report.machine.background import LateArgument
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.machine.staging import put, strangers
 from loopsheet.report.messages.errors import InputError, OutputError, UsageError
@@ -126,7 +126,7 @@ def test_what_a_long_build_takes_is_told_before_it_begins(
 
 
 def test_the_referee_says_the_same_of_values_that_it_is_told(paper: Report) -> None:
-    plain = Later[tuple[Any, ...]]()
+    plain = LateArgument[tuple[Any, ...]]()
     plain.told.append(pickle.loads(pickle.dumps(paper.values.plain)))
     found = build._refereed(Study(PAPER).recipe, plain)
     assert found == (paper.referee, paper.comparisons)

@@ -15,8 +15,8 @@ from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge import bounds as numbers
-from loopsheet.report.judge.chain import Chain, Made
-from loopsheet.report.judge.sensitivity import Numbers
+from loopsheet.report.judge.chain import Chain, SheetDerivatives
+from loopsheet.report.judge.sensitivity import NumericSweep
 from loopsheet.report.plan import derivatives
 from loopsheet.report.prepared import Prepared
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
@@ -220,7 +220,11 @@ def test_rows_of_one_value_share_what_they_do(kind: Any, shares: list[list[float
     sheet = Sheet((x, formula("c", kind(x[k], (k, 1, n)) * 4)))
     given = np.array([[2.0, 5.0, 10.0, 17.0], [2.0, 7.0, 7.0, 2.0], [4.0, np.nan, 4.0, 4.0]])
     values = evaluate(sheet, {"rows": [1, 2, 3, 4]}, {"x": given})
-    found = Numbers(Chain(Made.of(sheet), values.layouts, {"x": np.arange(4)}), values).go().at([("c", 0)])
+    found = (
+        NumericSweep(Chain(SheetDerivatives.of(sheet), values.layouts, {"x": np.arange(4)}), values)
+        .go()
+        .at([("c", 0)])
+    )
     assert found[:, 0] == pytest.approx(np.array([*shares, [4 / 3, 0, 4 / 3, 4 / 3]]))
 
 
@@ -234,8 +238,8 @@ def test_a_batch_of_sensitivities_has_no_number_where_a_cell_has_no_value() -> N
         np.array([[2.0, 5.0, 10.0, 17.0], [0.5, 5.0, 10.0, 2.0]]),
     )
     values = evaluate(sheet, {"rows": [1, 2, 3, 4]}, {"a": 1.0, "b": 3.0, "x": given})
-    chain = Chain(Made.of(sheet), values.layouts, {"x": np.arange(4), "b": np.array([4])})
-    found = Numbers(chain, values).go().at([("y", 0), ("c", 0), ("t", 0)])
+    chain = Chain(SheetDerivatives.of(sheet), values.layouts, {"x": np.arange(4), "b": np.array([4])})
+    found = NumericSweep(chain, values).go().at([("y", 0), ("c", 0), ("t", 0)])
     slope = 0.5 / np.sqrt(np.maximum(given - 1, 0.25))
     none = np.full(5, np.nan)
     assert found[0] == pytest.approx(
@@ -293,7 +297,11 @@ def of_two_tests(prepared: Prepared, name: str, drawn: int = 0) -> Any:
         data |= {given: data[given] * share for given in GIVEN}
     values = evaluate(prepared.sheet, {"tests": [1, 2]}, data)
     sources = {given: np.arange(2) + 2 * n for n, given in enumerate(GIVEN)}
-    found = Numbers(Chain(Made.of(prepared.sheet), values.layouts, sources), values).go().of(name)
+    found = (
+        NumericSweep(Chain(SheetDerivatives.of(prepared.sheet), values.layouts, sources), values)
+        .go()
+        .of(name)
+    )
     return found, values
 
 
@@ -309,11 +317,11 @@ def test_the_paper_against_differences(prepared: Prepared, name: str) -> None:
 def test_a_batch_has_the_derivatives_of_each(prepared: Prepared, name: str) -> None:
     found, values = of_two_tests(prepared, name, drawn=3)
     assert found.shape == (3, values.value[name].shape[-1], 6)
-    sheet, made, sources = prepared.sheet, Made.of(prepared.sheet), {"v": np.arange(2)}
+    sheet, made, sources = prepared.sheet, SheetDerivatives.of(prepared.sheet), {"v": np.arange(2)}
     for n in range(3):
         data = {c.name: values.value[c.name] for c in sheet.columns if isinstance(c.rule, Given)}
         alone = evaluate(sheet, {"tests": [1, 2]}, {c: v[n] if v.ndim > 1 else v for c, v in data.items()})
-        each = Numbers(Chain(made, alone.layouts, sources), alone).go().of(name)
+        each = NumericSweep(Chain(made, alone.layouts, sources), alone).go().of(name)
         assert each == pytest.approx(found[n, :, :2], rel=1e-12)
 
 

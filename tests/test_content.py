@@ -20,7 +20,7 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines import numpy_texts
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge import bounds
-from loopsheet.report.judge.chain import Made
+from loopsheet.report.judge.chain import SheetDerivatives
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.plan import derivatives
 from loopsheet.report.quantity import Bounds
@@ -106,7 +106,7 @@ def test_what_is_kept_computes_the_same_and_nothing_is_lowered(
 
     first = made()
     assert {code for row in first[1][1] for code in row} == {Status.OK, Status.DOMAIN}
-    again = [Made.of(SHEET).nodes]
+    again = [SheetDerivatives.of(SHEET).nodes]
 
     def fail(*_: object) -> None:
         raise AssertionError
@@ -115,7 +115,7 @@ def test_what_is_kept_computes_the_same_and_nothing_is_lowered(
         patch.setattr(numpy_texts, "program_texts", fail)
         patch.setattr(derivatives, "derivatives", fail)
         assert made() == first
-        again.append(Made.of(SHEET).nodes)
+        again.append(SheetDerivatives.of(SHEET).nodes)
         with pytest.raises(AssertionError):
             Program.of(Sheet((GIVEN, formula(x + 2))))
     assert again[0] == again[1]

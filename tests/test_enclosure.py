@@ -17,7 +17,7 @@ from loopsheet.report.engines.intervals import Intervals
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_enclosed import EnclosedRows
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.judge.chain import Made
+from loopsheet.report.judge.chain import SheetDerivatives
 from loopsheet.report.judge.enclosure import Enclosure
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.referee import certificate
@@ -216,7 +216,7 @@ def test_what_is_taken_by_order_is_enclosed_with_its_derivatives(kind: Any) -> N
 
     y = formula("y", 3 * x[k], rows, requires=((x[k] < 5, "x is less than 5"),))
     sheet = Sheet((x, y, formula("m", kind(y[k], (k, 1, n)) + 1)))
-    program, made = Program.of(sheet), Made.of(sheet)
+    program, made = Program.of(sheet), SheetDerivatives.of(sheet)
     rng, narrow = np.random.default_rng(4), 0
     for case in range(200):
         size = 2 + case % 5

@@ -29,7 +29,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.files.form import text
 from loopsheet.report.files.manifest import Manifest, read_manifest
 from loopsheet.report.machine import staging
-from loopsheet.report.machine.background import Background, Later
+from loopsheet.report.machine.background import Background, LateArgument
 from loopsheet.report.machine.scratch import PREFIX, scratch
 from loopsheet.report.machine.staging import put, staged
 from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
@@ -402,10 +402,10 @@ def test_where_no_process_may_be_begun_the_work_is_done_when_it_is_asked_for(
 def test_an_argument_may_be_told_while_a_call_runs(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", program)
     many = list(range(100_000))
-    with Background(Later.wait, Later()) as aside:
+    with Background(LateArgument.wait, LateArgument()) as aside:
         aside.tell(many)
         assert aside.result() == many
-    with Background(Later.wait, Later()):
+    with Background(LateArgument.wait, LateArgument()):
         pass  # nobody tells it, and nobody waits
 
 

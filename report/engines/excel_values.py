@@ -16,7 +16,7 @@ from ..cells.layout import evenly, precedents
 from ..cells.values import CODES, Status, Values, inherited, rows_kept
 from ..plan.adjoints import Adjoint, Term
 from ..plan.kept import of_data
-from ..plan.slopes import Local, with_unknowns
+from ..plan.slopes import NodeDerivatives, with_unknowns
 from ..sheet import Sheet
 from .kernels import Array
 from .numpy import Program, parts
@@ -111,7 +111,7 @@ def slope_values(values: Values, sheet: Sheet, told: Mapping[str, Any]) -> dict[
     """
     program = Program.of_texts(with_unknowns(sheet, told["again"]), told["program"])
     found = parts(program, values)
-    nodes = {node.name: node for node in of_data(told["nodes"], tuple[Local, ...])}
+    nodes = {node.name: node for node in of_data(told["nodes"], tuple[NodeDerivatives, ...])}
     held = {name: found[part] for name, part in told["held"].items()}
     terms = of_data(told["spread"], dict[str, Term])
     spread = [

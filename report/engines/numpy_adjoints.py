@@ -12,7 +12,7 @@ from ..cells.layout import precedents
 from ..cells.values import Status, Values, rows_kept
 from ..plan.adjoints import Adjoint, Share, Solution, Term
 from ..plan.order import places
-from ..plan.slopes import Local
+from ..plan.slopes import NodeDerivatives
 from .kernels import Array
 
 __all__ = ["computed"]
@@ -20,7 +20,7 @@ __all__ = ["computed"]
 
 def computed(
     quantities: Iterable[Adjoint],
-    nodes: Mapping[str, Local],
+    nodes: Mapping[str, NodeDerivatives],
     parts: Mapping[str, Array],
     values: Values,
 ) -> dict[str, Array]:
@@ -30,7 +30,7 @@ def computed(
     ----------
     quantities : iterable of Adjoint
         Each after those that it names.
-    nodes : mapping of str to Local
+    nodes : mapping of str to NodeDerivatives
         Totals by order of which a share is asked.
     parts : mapping of str to array (rows,)
         Of the derivatives.
@@ -50,7 +50,9 @@ def computed(
 
 
 class _Adding:
-    def __init__(self, nodes: Mapping[str, Local], parts: Mapping[str, Array], values: Values) -> None:
+    def __init__(
+        self, nodes: Mapping[str, NodeDerivatives], parts: Mapping[str, Array], values: Values
+    ) -> None:
         self.nodes, self.parts, self.values = nodes, parts, values
         self.layouts = values.layouts
         self.found: dict[str, Array] = {}

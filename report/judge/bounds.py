@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from ..cells.layout import Layout
 from ..cells.values import Status, Values
 from ..plan.order import places
-from ..plan.slopes import Local, Slope
+from ..plan.slopes import NodeDerivatives, Slope
 from ..result.agreement import LIMIT
 from ..sheet import Sheet
-from .chain import Chain, Made
-from .sensitivity import Numbers
+from .chain import Chain, SheetDerivatives
+from .sensitivity import NumericSweep
 
 __all__ = ["bounds"]
 
@@ -44,7 +44,7 @@ def bounds(sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Arra
         In SI and units of eps, at least the cell's own size; infinite where nothing is known, NaN where
         the cell has no value.
     """
-    made = Made.of(sheet, True)
+    made = SheetDerivatives.of(sheet, True)
     status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
     sources, number = {}, 0
     for node in made.nodes:
@@ -104,7 +104,7 @@ class _Entries:
         return found
 
 
-class _Spread(Numbers):
+class _Spread(NumericSweep):
     """The total derivatives of every node by all roundings there are.
 
     A slope that is not known has no entry, and the rounding of its node may be anything.
@@ -166,7 +166,7 @@ class _Spread(Numbers):
         """The sizes of derivatives times all roundings."""
         return _weighed(derivatives, self.rounding)
 
-    def slope(self, node: Local, slope: Slope) -> Array:
+    def slope(self, node: NodeDerivatives, slope: Slope) -> Array:
         found = super().slope(node, slope)
         if (unknown := np.isnan(found)).any():
             rows = self.chain.sources[node.name]
@@ -174,7 +174,7 @@ class _Spread(Numbers):
             self.rounding[rows] = np.where(odd, np.inf, self.rounding[rows])
         return np.nan_to_num(found)
 
-    def share(self, node: Local, name: str, rows: NDArray[np.intp]) -> Array:
+    def share(self, node: NodeDerivatives, name: str, rows: NDArray[np.intp]) -> Array:
         """A row that rounding may exchange with one that is taken counts as that one does."""
         value, summed = self.values.value[name][rows], self.summed(node)
         room = LIMIT * EPS * self.total(name, self.weighed(self.whole))[rows]

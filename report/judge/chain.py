@@ -22,24 +22,24 @@ from numpy.typing import NDArray
 from ..cells.layout import Layout
 from ..engines.numpy import Laid, Program
 from ..plan.kept import as_data, of_data, of_sheet
-from ..plan.slopes import Local, Slope, with_unknowns
+from ..plan.slopes import NodeDerivatives, Slope, with_unknowns
 from ..sheet import Sheet
 
-__all__ = ["Chain", "Level", "Made", "Pattern"]
+__all__ = ["Chain", "Level", "SheetDerivatives", "SparseRows"]
 
 Numbered = NDArray[np.intp]
 _NONE = np.zeros(0, dtype=np.intp)
 
 
 @dataclass(frozen=True)
-class Made:
+class SheetDerivatives:
     """The derivatives of a sheet: its nodes, each after those that it names, and what computes them."""
 
-    nodes: tuple[Local, ...]
+    nodes: tuple[NodeDerivatives, ...]
     program: Program
 
     @classmethod
-    def of(cls, sheet: Sheet, roundings: bool = False) -> Made:
+    def of(cls, sheet: Sheet, roundings: bool = False) -> SheetDerivatives:
         """Make them, what rounding does only if it is asked for; or take them as they were made before."""
 
         def make() -> dict[str, Any]:
@@ -51,10 +51,10 @@ class Made:
             return {"nodes": as_data(found.nodes), "again": found.again, "program": texts}
 
         told = of_sheet(sheet, "derivatives and roundings" if roundings else "derivatives", (), make)
-        nodes = of_data(told["nodes"], tuple[Local, ...])
+        nodes = of_data(told["nodes"], tuple[NodeDerivatives, ...])
         return cls(nodes, Program.of_texts(with_unknowns(sheet, told["again"]), told["program"]))
 
-    def only(self, names: Collection[str]) -> Made:
+    def only(self, names: Collection[str]) -> SheetDerivatives:
         """Those of some nodes, and of what they rest on."""
         needed, kept = set(names), []
         for node in reversed(self.nodes):
@@ -65,7 +65,7 @@ class Made:
 
 
 @dataclass(frozen=True)
-class Pattern:
+class SparseRows:
     """Entries of a node or of some cells, those of a row beside one another."""
 
     rows: Numbered
@@ -95,20 +95,20 @@ class Pattern:
     def _by_scalars(self) -> dict[int, tuple[Numbered, Numbered, Numbered, Numbered]]:
         return {}
 
-    def only(self, rows: Numbered) -> Pattern:
+    def only(self, rows: Numbered) -> SparseRows:
         """That of some rows, one after another, numbered anew; a row may come twice."""
         first, last = (np.searchsorted(self.rows, rows, side) for side in ("left", "right"))
         counts = last - first
         which = np.arange(counts.sum()) + np.repeat(first - np.cumsum(counts) + counts, counts)
-        return Pattern(np.repeat(np.arange(rows.size), counts), self.by[which], self.entries[which])
+        return SparseRows(np.repeat(np.arange(rows.size), counts), self.by[which], self.entries[which])
 
 
 @dataclass(frozen=True)
 class Level:
     """Nodes that rest on none of one another."""
 
-    nodes: tuple[Local, ...]
-    slopes: tuple[tuple[Local, Slope, slice], ...]
+    nodes: tuple[NodeDerivatives, ...]
+    slopes: tuple[tuple[NodeDerivatives, Slope, slice], ...]
     """The slopes of all of them, one after another."""
     of: Numbered
     along: Numbered
@@ -130,14 +130,16 @@ class Chain:
 
     Parameters
     ----------
-    made : Made
+    made : SheetDerivatives
         The sheet's derivatives.
     layouts : mapping of axis name to Layout
     sources : mapping of node name to integer array (rows,)
         For what derivatives are taken by, the number of each row among all of it; -1 for a row that is not.
     """
 
-    def __init__(self, made: Made, layouts: Mapping[str, Layout], sources: Mapping[str, Numbered]) -> None:
+    def __init__(
+        self, made: SheetDerivatives, layouts: Mapping[str, Layout], sources: Mapping[str, Numbered]
+    ) -> None:
         self.made, self.layouts, self.sources = made, layouts, sources
         self.number = 1 + max((int(own.max(initial=-1)) for own in sources.values()), default=-1)
         nodes = made.nodes
@@ -146,7 +148,7 @@ class Chain:
         self.scalars = {name: self.number + n for n, name in enumerate(computed)}
         self.length = 1
         """How many entries there are. The first is 1."""
-        self.patterns: dict[str, Pattern] = {}
+        self.patterns: dict[str, SparseRows] = {}
         for node in nodes:
             by = sources.get(node.name, _NONE)
             rows = np.flatnonzero(by >= 0)
@@ -158,15 +160,15 @@ class Chain:
         deep = sorted(nodes, key=lambda node: depth[node.name])
         self.steps = [self._step(tuple(own)) for _, own in groupby(deep, key=lambda node: depth[node.name])]
 
-    def size(self, node: Local) -> int:
+    def size(self, node: NodeDerivatives) -> int:
         """How many rows a node has."""
         return 1 if node.axis is None else self.layouts[node.axis].size
 
-    def terms(self, node: Local) -> int:
+    def terms(self, node: NodeDerivatives) -> int:
         """How many rows its slopes have."""
         return self.size(node) if node.over is None else self.layouts[node.over].size
 
-    def totals(self, node: Local) -> Numbered:
+    def totals(self, node: NodeDerivatives) -> Numbered:
         """For each row that a total runs over, the row of the total: of the only one, or of a group's."""
         own = np.zeros(self.terms(node), dtype=np.intp)
         if node.axis is not None and node.over is not None:
@@ -174,14 +176,14 @@ class Chain:
                 own[rows] = group
         return own
 
-    def named(self, node: Local, slope: Slope) -> Numbered:
+    def named(self, node: NodeDerivatives, slope: Slope) -> Numbered:
         """The row of what a slope is by, for each row of the slope."""
         number = self.terms(node)
         if slope.axis is None:
             return np.zeros(number, dtype=np.intp)
         return np.arange(number) if slope.index is None else self.layouts[slope.axis].rows[slope.index]
 
-    def cells(self, places: Sequence[tuple[str, int]]) -> Pattern:
+    def cells(self, places: Sequence[tuple[str, int]]) -> SparseRows:
         """The entries of some cells, by column and row; each cell is a row."""
         numbers: dict[str, list[int]] = {}
         for number, (name, _) in enumerate(places):
@@ -191,14 +193,14 @@ class Chain:
             own = self.patterns[name].only(np.array([places[number][1] for number in which]))
             found.append((np.array(which)[own.rows], own.by, own.entries))
         rows, by, entries = map(np.concatenate, zip(*found, strict=True))
-        return Pattern(rows, by, entries)
+        return SparseRows(rows, by, entries)
 
     @cached_property
     def laid(self) -> Laid:
         """The sheet of the derivatives over the rows."""
         return Laid(self.made.program.sheet, dict(self.layouts))
 
-    def _step(self, nodes: tuple[Local, ...]) -> Level:
+    def _step(self, nodes: tuple[NodeDerivatives, ...]) -> Level:
         """The nodes' entries, and how they come about."""
         first, width, terms = self.length, 0, 0
         slopes, of, along, starts = [], [_NONE], [_NONE], [_NONE]
@@ -231,11 +233,11 @@ class Chain:
             rows, by = np.concatenate([own.rows, rows]), np.concatenate([own.by, by])
             entries = np.concatenate([own.entries, entries])
         order = np.argsort(rows, kind="stable")
-        self.patterns[name] = Pattern(rows[order], by[order], entries[order])
+        self.patterns[name] = SparseRows(rows[order], by[order], entries[order])
 
-    def _theirs(self, node: Local, slope: Slope) -> Pattern:
+    def _theirs(self, node: NodeDerivatives, slope: Slope) -> SparseRows:
         """The entries of what a slope is by, for each row of the slope."""
         if slope.by not in self.scalars:
             return self.patterns[slope.by].only(self.named(node, slope))
         rows = np.arange(self.terms(node))
-        return Pattern(rows, np.full_like(rows, self.scalars[slope.by]), np.zeros_like(rows))
+        return SparseRows(rows, np.full_like(rows, self.scalars[slope.by]), np.zeros_like(rows))

@@ -25,10 +25,10 @@ from ..engines.numpy_enclosed import EnclosedRows
 from ..engines.numpy_root import RootProgram
 from ..engines.numpy_rows import KeptIntervals, in_groups
 from ..plan.order import places
-from ..plan.slopes import Local, Slope
+from ..plan.slopes import NodeDerivatives, Slope
 from ..sheet import Column, Reference, Sheet
-from .chain import Chain, Made
-from .sensitivity import Along
+from .chain import Chain, SheetDerivatives
+from .sensitivity import ForwardSweep
 
 __all__ = ["Enclosure"]
 
@@ -240,12 +240,14 @@ class Enclosure(_Rows):
 
     # --- derivatives ----------------------------------------------------------------------------------
 
-    def derivatives(self, made: Made, sources: Mapping[str, NDArray[np.intp]]) -> dict[str, Intervals]:
+    def derivatives(
+        self, made: SheetDerivatives, sources: Mapping[str, NDArray[np.intp]]
+    ) -> dict[str, Intervals]:
         """Total derivatives of every column by given cells.
 
         Parameters
         ----------
-        made : Made
+        made : SheetDerivatives
             Of the sheet.
         sources : mapping of column name to integer array (rows,)
             For given columns, the number of each row among all that derivatives are taken by.
@@ -265,7 +267,7 @@ class _Slopes(_Rows):
     What it has besides slopes is of no use here, and a root that it would seek again is not known.
     """
 
-    def __init__(self, cells: Enclosure, made: Made) -> None:
+    def __init__(self, cells: Enclosure, made: SheetDerivatives) -> None:
         super().__init__(made.program.sheet, cells.layouts, dict(cells.value), dict(cells.sure))
         self.parts: dict[str, Intervals] = {}
         with np.errstate(all="ignore"):
@@ -286,14 +288,14 @@ class _Slopes(_Rows):
         return self.value[name]
 
 
-class _Along(Along):
+class _Along(ForwardSweep):
     """The derivatives while the given cells move within their intervals."""
 
     def __init__(self, chain: Chain, cells: Enclosure) -> None:
         super().__init__(chain, lambda shape: Intervals(np.zeros(shape), np.zeros(shape)))
         self.cells = _Slopes(cells, chain.made)
 
-    def slope(self, node: Local, slope: Slope) -> Intervals:
+    def slope(self, node: NodeDerivatives, slope: Slope) -> Intervals:
         found, by = self.cells.parts[slope.value], slope.by
         if not node.by_order:
             return found
@@ -301,7 +303,7 @@ class _Along(Along):
         terms = self.cells.value[by].where(self.cells.sure[by]).take(rows)
         return joined([_shares(terms[own], node.word) for own in self.groups(node)]) * found  # type: ignore[no-any-return]
 
-    def ended(self, node: Local) -> None:
+    def ended(self, node: NodeDerivatives) -> None:
         """What may have no value may have any derivative by what it rests on."""
         if node.over is not None or self.cells.sure[node.of].all():
             return

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from ..cells.values import Status, Values, rows_kept
 from ..engines.numpy import parts
 from ..plan.order import places
-from ..plan.slopes import Local, Slope
-from .chain import Chain, Numbered, Pattern
+from ..plan.slopes import NodeDerivatives, Slope
+from .chain import Chain, Numbered, SparseRows
 
-__all__ = ["Along", "Numbers"]
+__all__ = ["ForwardSweep", "NumericSweep"]
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ AT_ONCE = 1 << 22
 """Entries."""
 
 
-class Along:
+class ForwardSweep:
     """The derivatives along a chain.
 
     Parameters
@@ -70,19 +70,19 @@ class Along:
                         self.whole[..., self.chain.scalars[node.name] - self.chain.number, :] = own[..., 0, :]
         return self
 
-    def groups(self, node: Local) -> list[slice]:
+    def groups(self, node: NodeDerivatives) -> list[slice]:
         """Where the rows of each group stand, of which something is taken."""
         assert node.over is not None
         return self.chain.layouts[node.over].groups
 
-    def slope(self, node: Local, slope: Slope) -> Any:
+    def slope(self, node: NodeDerivatives, slope: Slope) -> Any:
         """The values of a slope (..., rows); nothing where a sum leaves a row out."""
         raise NotImplementedError
 
-    def ended(self, node: Local) -> None:
+    def ended(self, node: NodeDerivatives) -> None:
         """The entries of a node are there."""
 
-    def derivatives(self, cells: Pattern, number: int) -> Any:
+    def derivatives(self, cells: SparseRows, number: int) -> Any:
         """The derivatives of some cells by all sources (..., cells, sources).
 
         `cells`: from :meth:`Chain.cells`. `number`: how many they are.
@@ -103,7 +103,7 @@ class Along:
         return self.derivatives(self.chain.patterns[name], self.chain.sizes[name])
 
 
-class Numbers(Along):
+class NumericSweep(ForwardSweep):
     """The derivatives at finished values; NaN where they are not known.
 
     `values`: all columns; a batch is one of derivatives.
@@ -132,7 +132,7 @@ class Numbers(Along):
             return super().go()
         for first in range(0, self.batch[0], some):
             block = slice(first, first + some)
-            own = Numbers(self.chain, self.values.of_batch(block)).go()
+            own = NumericSweep(self.chain, self.values.of_batch(block)).go()
             self.entries[block], self.whole[block] = own.entries, own.whole
         return self
 
@@ -160,7 +160,7 @@ class Numbers(Along):
             if name in self.odd:
                 yield n, self.values.status[name][..., row] != Status.OK
 
-    def slope(self, node: Local, slope: Slope) -> Array:
+    def slope(self, node: NodeDerivatives, slope: Slope) -> Array:
         """Those of what is taken by order count for the rows that it takes."""
         found = self.parts[slope.value]
         if node.over is None:
@@ -170,19 +170,19 @@ class Numbers(Along):
             return np.where(share > 0, share * found, 0.0)
         return np.where(self.summed(node), found, 0.0) if node.of in self.kept else found
 
-    def ended(self, node: Local) -> None:
+    def ended(self, node: NodeDerivatives) -> None:
         """What has no value moves nothing: a sum leaves it out."""
         if node.over is None and node.of in self.odd:
             cells = self.chain.patterns[node.name]
             dead = self.values.status[node.of][..., cells.rows] != Status.OK
             self.entries[..., cells.entries] = np.where(dead, 0.0, self.entries[..., cells.entries])
 
-    def share(self, node: Local, name: str, rows: Numbered) -> Array:
+    def share(self, node: NodeDerivatives, name: str, rows: Numbered) -> Array:
         """How much of the change of each row counts by its place, in its group if rows stand in groups."""
         value = np.where(self.summed(node), self.values.value[name][..., rows], np.inf)
         return np.concatenate([self._shared(node, value[..., own]) for own in self.groups(node)], axis=-1)
 
-    def _shared(self, node: Local, value: Array) -> Array:
+    def _shared(self, node: NodeDerivatives, value: Array) -> Array:
         """The same of the rows of one group: rows with one value share it."""
         ordered, number = np.sort(value, axis=-1), np.isfinite(value).sum(axis=-1, keepdims=True)
         found: Array = np.zeros(value.shape)
@@ -193,7 +193,7 @@ class Numbers(Along):
             found += same / np.maximum(same.sum(axis=-1, keepdims=True), 1) / len(taken)
         return found
 
-    def summed(self, node: Local) -> NDArray[np.bool_]:
+    def summed(self, node: NodeDerivatives) -> NDArray[np.bool_]:
         """The rows that a sum runs over."""
         assert node.over is not None
         everything = np.ones(self.chain.layouts[node.over].size, dtype=bool)

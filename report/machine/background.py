@@ -14,14 +14,14 @@ from typing import Any, Generic, TypeVar
 from .memory import ample
 from .stopping import unstoppable, worker
 
-__all__ = ["Background", "Later", "serve"]
+__all__ = ["Background", "LateArgument", "serve"]
 
 T = TypeVar("T")
 _PATIENCE = 5.0
 """Seconds in which a process that is told to end takes back what it has begun."""
 
 
-class Later(Generic[T]):
+class LateArgument(Generic[T]):
     """An argument that is not known yet when a call begins: told to it while it runs."""
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class Background(Generic[T]):
     function : callable
         Of a module; what it returns must be plain data.
     *arguments : anything
-        Plain data, too; the last may be a :class:`Later`, which has to be told.
+        Plain data, too; the last may be a :class:`LateArgument`, which has to be told.
     """
 
     def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
@@ -60,7 +60,7 @@ class Background(Generic[T]):
             with suppress(BrokenPipeError):  # it has ended, and that is told when somebody asks
                 self._process.stdin.write(pickle.dumps(self._call))
                 self._process.stdin.flush()
-                if not any(isinstance(argument, Later) for argument in arguments):
+                if not any(isinstance(argument, LateArgument) for argument in arguments):
                     self._process.stdin.close()
 
     def __enter__(self) -> Background[T]:

@@ -38,22 +38,39 @@ def put(path: Path, content: str | bytes) -> None:
         raise
 
 
-def replaced(path: Path, before: bytes, after: bytes) -> None:
+def replaced(path: Path, before: bytes | None, after: bytes) -> None:
     """Replace a user's file as a whole; what it may be read and written by stays as it is.
 
     Parameters
     ----------
     path : Path
         Where a link leads to is replaced, not the link.
-    before : bytes
-        What was read; a file that somebody has changed since is left alone.
+    before : bytes or None
+        What was read; a file that somebody has changed since is left alone. None if there was none.
 
     Raises
     ------
     OutputError
         It cannot be written; it is as it was then.
     """
-    _replaced(path, before, after)
+    target = path.resolve()
+    try:
+        there = target.exists()
+        # An administrator may write anything: what counts is what the owner has said.
+        if there and (not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK)):
+            raise PermissionError("it is read-only")
+        if target.is_dir():
+            raise IsADirectoryError("it is a folder")
+        with scratch(target.parent) as stage, unstoppable():
+            draft = stage / target.name
+            draft.write_bytes(after)
+            if there:
+                shutil.copymode(target, draft)
+            if before is not None and target.read_bytes() != before:
+                raise PermissionError("somebody has changed it meanwhile")
+            os.replace(draft, target)
+    except OSError as error:
+        raise OutputError(_unwritable(path, error)) from error
 
 
 def own(path: Path, mark: bytes) -> bytes | None:
@@ -97,32 +114,11 @@ def written(path: Path, before: bytes | None, content: bytes) -> None:
     """
     if before is None and path.exists():
         raise OutputError(_unwritable(path, PermissionError("somebody has put a file there meanwhile")))
-    _replaced(path, before, content)
+    replaced(path, before, content)
 
 
 def _unwritable(path: Path, error: OSError) -> Diagnostic:
     return diagnose("LS613", Location(path.as_posix()), text=path.name, **why(error, "of both"))
-
-
-def _replaced(path: Path, before: bytes | None, after: bytes) -> None:
-    target = path.resolve()
-    try:
-        there = target.exists()
-        # An administrator may write anything: what counts is what the owner has said.
-        if there and (not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK)):
-            raise PermissionError("it is read-only")
-        if target.is_dir():
-            raise IsADirectoryError("it is a folder")
-        with scratch(target.parent) as stage, unstoppable():
-            draft = stage / target.name
-            draft.write_bytes(after)
-            if there:
-                shutil.copymode(target, draft)
-            if before is not None and target.read_bytes() != before:
-                raise PermissionError("somebody has changed it meanwhile")
-            os.replace(draft, target)
-    except OSError as error:
-        raise OutputError(_unwritable(path, error)) from error
 
 
 def strangers(out: Path) -> list[str]:

@@ -21,7 +21,7 @@ from typing import Literal, NamedTuple
 
 from ..cells.grid import Product
 from .order import places
-from .slopes import Local
+from .slopes import NodeDerivatives
 
 __all__ = ["Adjoint", "Adjoints", "Solution", "Term", "Unfollowed", "adjoints"]
 
@@ -114,7 +114,7 @@ class Adjoints:
 
 
 def adjoints(
-    nodes: Sequence[Local],
+    nodes: Sequence[NodeDerivatives],
     axes: Mapping[str, str | None],
     results: Iterable[str],
     loops: Sequence[Sequence[str]],
@@ -127,7 +127,7 @@ def adjoints(
 
     Parameters
     ----------
-    nodes : sequence of Local
+    nodes : sequence of NodeDerivatives
         Of the derivatives; of loops, the last pass counts.
     axes : mapping of str to str or None
         The axis of every column.
@@ -144,7 +144,7 @@ def adjoints(
     given : collection of str
         What derivatives are asked for by.
     """
-    making = _Backwards(nodes, axes, loops, iterated, repeats, indexed)
+    making = _ReversePass(nodes, axes, loops, iterated, repeats, indexed)
     ways: dict[str, dict[str, tuple[Product, ...]]] = {}
     for result in results:
         kept = dict(making.made), dict(making.folds), dict(making.heads)
@@ -171,7 +171,7 @@ def _needed(
 
 
 @dataclass
-class _Fold:
+class _LoopClosure:
     """What is known of a loop: how its end follows what is before it."""
 
     rows: dict[str, dict[tuple[str, str | None], str]]
@@ -182,7 +182,7 @@ class _Fold:
     """For each of the numbers, the quantities by what is before the loop, and by the numbers."""
 
 
-class _Open:
+class _PendingTerms:
     """The adjoints of one result so far: terms wait until all users of a cell are done."""
 
     def __init__(self, result: str) -> None:
@@ -197,10 +197,10 @@ def _settled(name: str) -> str:
     return name.partition("~")[0]
 
 
-class _Backwards:
+class _ReversePass:
     def __init__(
         self,
-        nodes: Sequence[Local],
+        nodes: Sequence[NodeDerivatives],
         axes: Mapping[str, str | None],
         loops: Sequence[Sequence[str]],
         iterated: Collection[str],
@@ -213,8 +213,8 @@ class _Backwards:
         self.repeats, self.indexed = repeats, set(indexed)
         self.loop_of = {name: n for n, loop in enumerate(loops) for name in loop}
         self.made: dict[str, Adjoint] = {}
-        self.folds: dict[int, _Fold] = {}
-        self.heads: dict[str, _Open] = {}
+        self.folds: dict[int, _LoopClosure] = {}
+        self.heads: dict[str, _PendingTerms] = {}
 
     # --- names
 
@@ -251,13 +251,13 @@ class _Backwards:
     def of_number(self, result: str) -> dict[str, str]:
         """The adjoints of what was given, for a result that is one number."""
         if result not in self.heads:
-            self.heads[result] = self.back(_Open(result), {result: 1.0})
+            self.heads[result] = self.back(_PendingTerms(result), {result: 1.0})
         own = self.heads[result]
         return {name: made for name, made in own.made.items() if not self.nodes[name].slopes}
 
     # --- backwards, for a number
 
-    def back(self, own: _Open, start: Mapping[str, float], only: int | None = None) -> _Open:
+    def back(self, own: _PendingTerms, start: Mapping[str, float], only: int | None = None) -> _PendingTerms:
         """Take all that a result rests on, the last first; or only what stands in a loop."""
         rests, waiting = set[str](), [*start, *own.terms]
         while waiting:
@@ -286,14 +286,14 @@ class _Backwards:
             self.close(own, inside)
         return own
 
-    def quantity(self, own: _Open, name: str, plus: float = 0.0) -> None:
+    def quantity(self, own: _PendingTerms, name: str, plus: float = 0.0) -> None:
         """The adjoint of a node whose users are done, if there is anything."""
         terms = own.terms.pop(name, [])
         if terms or plus:
             made = f"d {own.result} / d {name}"
             own.made[name] = self.add(Adjoint(made, own.result, name, self.axis(name), tuple(terms), plus))
 
-    def through(self, own: _Open, node: Local, by: str) -> None:
+    def through(self, own: _PendingTerms, node: NodeDerivatives, by: str) -> None:
         """Lead the adjoint of a node to what it names."""
         rows = node.over or node.axis
         for slope in node.slopes:
@@ -305,13 +305,13 @@ class _Backwards:
             term = Term(factors, on, rows, node.of, node.over is not None, group, slope.axis, slope.index)
             self.put(own, _settled(slope.by), term)
 
-    def on_rows(self, own: _Open, by: str, node: Local) -> str:
+    def on_rows(self, own: _PendingTerms, by: str, node: NodeDerivatives) -> str:
         """The adjoint of a sum in groups, for each of the rows of its group."""
         name = f"{by} of each row"
         term = Term((), by, node.over, group=node.axis)
         return self.add(Adjoint(name, own.result, node.name, node.over, (term,)))
 
-    def put(self, own: _Open, name: str, term: Term) -> None:
+    def put(self, own: _PendingTerms, name: str, term: Term) -> None:
         """A term for what a node names; rows that repeat another one's are added up for that one first."""
         if term.rows is not None and term.rows in self.repeats:
             of, index = self.repeats[term.rows]
@@ -340,7 +340,7 @@ class _Backwards:
             for name in names
         )
 
-    def share(self, node: Local) -> str:
+    def share(self, node: NodeDerivatives) -> str:
         """What each row counts in a total by order."""
         name, taken = f"share in {node.name}", list[str]()
         if name not in self.made:
@@ -355,7 +355,7 @@ class _Backwards:
     # --- row by row
 
     def along(
-        self, result: str, ends: Callable[[Local], bool], step: bool = False
+        self, result: str, ends: Callable[[NodeDerivatives], bool], step: bool = False
     ) -> dict[tuple[str, str | None], str]:
         """The derivatives of each row of a column by what the rows on its way name, row by row.
 
@@ -402,7 +402,7 @@ class _Backwards:
 
     # --- loops
 
-    def fold(self, loop: int) -> _Fold:
+    def fold(self, loop: int) -> _LoopClosure:
         """How a loop closes; made once."""
         if loop in self.folds:
             return self.folds[loop]
@@ -421,9 +421,9 @@ class _Backwards:
                     numbers.append(by)
                 elif by not in self.iterated or index is not None or self.axis(by) != self.axis(name):
                     raise Unfollowed(by)
-        self.folds[loop] = fold = _Fold(rows, numbers)
+        self.folds[loop] = fold = _LoopClosure(rows, numbers)
         for name in numbers:
-            step = _Open(f"step of {name}" if name in self.iterated else name)
+            step = _PendingTerms(f"step of {name}" if name in self.iterated else name)
             if name in self.iterated:
                 self.through(step, self.nodes[name], "")
                 self.back(step, {}, loop)
@@ -443,14 +443,14 @@ class _Backwards:
             }
         return fold
 
-    def number(self, own: _Open, name: str) -> str:
+    def number(self, own: _PendingTerms, name: str) -> str:
         """The adjoint of a number by way of which a loop closes; 0 where there is nothing."""
         made = f"d {own.result} / d {name} again"
         terms = own.terms.pop(name, []) if name in self.iterated else own.terms.pop(f"{name} again", [])
         plus = 1.0 if own.result == name else 0.0
         return self.add(Adjoint(made, own.result, name, None, tuple(terms), plus))
 
-    def by_rows(self, own: _Open, fold: _Fold, loop: int) -> None:
+    def by_rows(self, own: _PendingTerms, fold: _LoopClosure, loop: int) -> None:
         """Solve the iterated rows for themselves, and lead that to what their steps name."""
         axes = dict.fromkeys(self.axis(name) for name in fold.rows)
         for axis in axes:
@@ -474,7 +474,7 @@ class _Backwards:
                     where = None if self.axis(by) is None else axis
                     own.terms.setdefault(to, []).append(Term((value,), made, axis, axis=where, index=index))
 
-    def close(self, own: _Open, loop: int) -> None:
+    def close(self, own: _PendingTerms, loop: int) -> None:
         """Lead the adjoints of what a loop ends with to what is before it."""
         fold = self.fold(loop)
         self.by_rows(own, fold, loop)

@@ -56,7 +56,7 @@ from ..column import Column
 from ..sheet import Sheet
 from .lowering import RESERVED, lowered
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
-from .slopes import Local, Slope, unknown_of
+from .slopes import NodeDerivatives, Slope, unknown_of
 
 __all__ = ["Derivatives", "derivatives", "rounding"]
 
@@ -73,7 +73,7 @@ class Derivatives:
     """Columns with roots whose cells do not tell the unknown, with the name of what stands for it."""
     plan: Plan
     """Its parts hold roundings and slopes; where one has no value, nothing is known."""
-    nodes: tuple[Local, ...]
+    nodes: tuple[NodeDerivatives, ...]
     """Each after those that it names."""
 
 
@@ -99,7 +99,7 @@ class _Making:
         self.again: dict[str, str] = {}
         self.sums: dict[tuple[str, Axis, Expr], Symbol] = {}
 
-    def node(self, node: Node) -> Iterator[Local]:
+    def node(self, node: Node) -> Iterator[NodeDerivatives]:
         """A node, after the sums of its equation if it is a root."""
         if isinstance(node, RootNode):
             yield from _RootMaking(self, node).locals()
@@ -114,7 +114,7 @@ class _Making:
             self.nodes.append(node)
             yield self.total(node)
 
-    def loop(self, node: LoopNode) -> Iterator[Local]:
+    def loop(self, node: LoopNode) -> Iterator[NodeDerivatives]:
         """Passes of a loop where it has settled: there, derivatives settle with them.
 
         All passes have the same slopes. In the first, what is iterated does not move.
@@ -132,7 +132,7 @@ class _Making:
                 slopes = (replace(each, by=named(each.by, each.by in iterated)) for each in moving)
                 yield replace(local, name=named(local.name), slopes=tuple(slopes))
 
-    def total(self, node: Total) -> Local:
+    def total(self, node: Total) -> NodeDerivatives:
         """What is taken over rows; it is a node of the derivatives too."""
         terms = _chosen(node.terms)
         # What is taken by order is cells; the mean of the two in the middle is rounded.
@@ -155,7 +155,7 @@ class _Making:
         own: Callable[[], Expr],
         slopes: dict[Symbol, Expr],
         total: Total | None = None,
-    ) -> Local:
+    ) -> NodeDerivatives:
         """A node, and the parts of its numbers; its own rounding only if it is asked for."""
         name = column.name if total is None else total.symbol.name
         over, axis = (None, column.axis) if total is None else (total.over, total.axis)
@@ -166,7 +166,9 @@ class _Making:
             if slope != 0
         )
         rows, summed = (None if each is None else each.name for each in (axis, over))
-        return Local(name, rows, summed, column.name, held, found, "" if total is None else total.word)
+        return NodeDerivatives(
+            name, rows, summed, column.name, held, found, "" if total is None else total.word
+        )
 
     def slope(self, by: Symbol, value: str) -> Slope:
         """The part that holds the derivative by what a symbol stands for."""
@@ -221,7 +223,7 @@ class _RootMaking:
         self.unknown = node.unknown
         self.moving: dict[Symbol, tuple[Axis, Expr]] = {}
 
-    def locals(self) -> Iterator[Local]:
+    def locals(self) -> Iterator[NodeDerivatives]:
         making = self.making
         form, value = (self.named(_chosen(each)) for each in (self.root.form, self.root.value))
         here = self.here()

@@ -10,7 +10,7 @@ from ..column import Column, Root
 from ..sheet import Sheet
 from .order import Word
 
-__all__ = ["Local", "Slope", "unknown_of", "with_unknowns"]
+__all__ = ["NodeDerivatives", "Slope", "unknown_of", "with_unknowns"]
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Slope:
 
 
 @dataclass(frozen=True)
-class Local:
+class NodeDerivatives:
     """A node with its derivatives by what it names itself."""
 
     name: str

@@ -15,7 +15,7 @@ from ..cells.values import Values
 from ..distribution import SCATTER
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
-from ..judge.chain import Made
+from ..judge.chain import SheetDerivatives
 from ..quantity import Bounds, Printed, there
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
@@ -80,7 +80,7 @@ class Programs:
 
     sheets: dict[tuple[str, ...], Sheet] = field(default_factory=dict)
     programs: dict[tuple[tuple[str, ...], frozenset[str]], Program] = field(default_factory=dict)
-    derivatives: dict[int, Made] = field(default_factory=dict)
+    derivatives: dict[int, SheetDerivatives] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

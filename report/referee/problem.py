@@ -19,8 +19,8 @@ from ..cells.layout import height, how_large, precedents
 from ..cells.values import Status, Values
 from ..engines.numpy import Program, evaluate
 from ..inputs.published import PublishedValue
-from ..judge.chain import Chain, Made
-from ..judge.sensitivity import Numbers
+from ..judge.chain import Chain, SheetDerivatives
+from ..judge.sensitivity import NumericSweep
 from ..quantity import Printed
 from ..result.verdict import Witness
 from ..sheet import Given, Sheet
@@ -107,11 +107,11 @@ class Problem:
         return id(self.sheet), *self.rows  # the campaign keeps its sheets
 
     @property
-    def made(self) -> Made:
+    def made(self) -> SheetDerivatives:
         """The derivatives of its sheet."""
         known, key = self.campaign.made.derivatives, id(self.sheet)  # the campaign keeps its sheets
         if key not in known:
-            known[key] = Made.of(self.sheet)
+            known[key] = SheetDerivatives.of(self.sheet)
         return known[key]
 
     @cached_property
@@ -308,11 +308,11 @@ class Problem:
         found[:, box.width <= 0] = 0.0
         return found
 
-    def _along(self, here: Here) -> Numbers:
+    def _along(self, here: Here) -> NumericSweep:
         """What all derivatives at a point are made of; at what is printed they are made once."""
 
-        def make() -> Numbers:
-            return Numbers(self._chain, here.values).go()
+        def make() -> NumericSweep:
+            return NumericSweep(self._chain, here.values).go()
 
         printed = self.campaign.shared.get(self._printed)
         return self.campaign.once(("along", *self._printed), make) if here.values is printed else make()

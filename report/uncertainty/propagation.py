@@ -21,8 +21,8 @@ from ..distribution import LEVEL, Shape
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
-from ..judge.chain import Chain, Made
-from ..judge.sensitivity import Numbers
+from ..judge.chain import Chain, SheetDerivatives
+from ..judge.sensitivity import NumericSweep
 from ..result.uncertain import (
     Budget,
     Conformity,
@@ -98,11 +98,11 @@ class Spread:
         sizes = [max(map(self._share, source.moves), default=0.0) for source in self.sources]
         self._shares = np.array(sizes or [0.0])
         self._known = _known(values)
-        self._made: Made = like._made if like else Made.of(values.sheet)
+        self._made: SheetDerivatives = like._made if like else SheetDerivatives.of(values.sheet)
         self._program: Program | None = like._program if like else None
         shared = like._chain if like and self._lies_as(like) else None
         self._chain: Chain = shared or Chain(self._made.only(self._known), values.layouts, numbers)
-        self._along = Numbers(self._chain, values).go()
+        self._along = NumericSweep(self._chain, values).go()
         self.second: SecondOrder | None = None
         """What is of second order; None for a sheet that is too large."""
         if self.sources and SecondOrder.is_small(values, self.sources):

@@ -18,7 +18,7 @@ from ..cells.values import Values, other_rows
 from ..distribution import Shape
 from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
-from ..judge.sensitivity import Numbers
+from ..judge.sensitivity import NumericSweep
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Formula, Iterated, Sheet
 
@@ -113,7 +113,7 @@ class SecondOrder:
         every = _beside(values, program, sources, root @ steps)
         ends = pairwise((0, 2 * number, 4 * number, 4 * number + 3))
         beside, far, together = (every.of_batch(slice(*each)) for each in ends)
-        self._along = Numbers(chain, beside).go()
+        self._along = NumericSweep(chain, beside).go()
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
             self._through = self._along.whole @ self.weights
         """The derivatives of computed scalars by the errors (steps, scalars, errors)."""

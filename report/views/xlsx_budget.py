@@ -21,6 +21,7 @@ from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
+from .xlsx_inputs import as_printed
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
@@ -111,9 +112,10 @@ class _Written:
         style.text(sheet, row, 0, source.name, "name")
         if each.estimate is not None and not source.origin:  # its own estimate stands in the other report
             allowed = self.grid[checked(name)].place.cell(cell)
-            style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), style("number"))
+            form = style("number", as_printed(report, block, cell))
+            style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), form)
         style.text(sheet, row, 2, block.unit, "unit")
-        style.text(sheet, row, 4, source.shape.value, "input")
+        style.text(sheet, row, 4, source.shape.value, "chosen")
         dof, size, number = min(source.dof, _UNLIMITED), self.size(row, each), ""
         if source.said == SCATTER:
             size, number = (f"{what}({self.readings(source)})" for what in ("=STDEV", "=COUNT"))

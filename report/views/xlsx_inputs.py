@@ -7,7 +7,6 @@ it only comes first: no formula names a given cell but the one that checks it, a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 from ..cells.grid import FIRST_ROW, SCALARS, CellBlock, Grid, Place, checked, letters
@@ -61,14 +60,12 @@ class GivenCells:
                 shown = None if isinstance(number, str) else number
                 sheet.write(place.row + row, place.column, shown, style("fixed", "0"))
             return
-        taken, places = block.name in self.report.inputs.taken, self.report.places(block.name)
         for row, each in enumerate(printed):
             at = (place.row + row, place.column)
             if each is None:
                 sheet.write_blank(*at, None, style("input"))
             else:
-                decimals = -places[row] if taken else _decimals(each, place.scale)
-                form = style("fixed" if fixed else "input", open_format(decimals))
+                form = style("fixed" if fixed else "input", as_printed(self.report, block, row))
                 sheet.write_number(*at, _number(each, place), form)
             if row < _MOST_NOTES:
                 sheet.write_comment(*at, self.note(block, each), {"x_scale": 2.2, "y_scale": 1.1})
@@ -223,9 +220,14 @@ def _number(printed: Printed, place: Place) -> float:
     return float((printed.value - place.zero) / place.scale)
 
 
-def _decimals(printed: Printed, scale: Fraction) -> int:
-    """Decimals of a printed number in the unit of its cell."""
-    return printed.decimals if printed.scale == scale else 0
+def as_printed(report: Report, block: CellBlock, row: int) -> str:
+    """A number format with as many decimals as a given number has, or more where more are typed."""
+    printed = report.inputs.printed(block.name)
+    if block.name in report.inputs.taken:
+        return open_format(-report.places(block.name)[row])
+    each = printed[row] if printed else None
+    # In another unit than that of its cell it has other decimals.
+    return open_format(each.decimals if each and each.scale == block.place.scale else 0)
 
 
 def _text(words: str) -> str:

@@ -112,8 +112,8 @@ def write_limits(
     to.end("to high", "upper acceptance limit", "{high}-{guard}", place.of(most), form)
     to.line("shape", "distribution", formulas[1], budget.shape.value)
     z = (budget.value - low) / budget.u, (high - budget.value) / budget.u
-    to.end("z low", "above the lower limit, over u", "({value}-{low})/{u}", z[0], "0.00")
-    to.end("z high", "below the upper limit, over u", "({high}-{value})/{u}", z[1], "0.00")
+    to.end("z low", "lower margin over u", "({value}-{low})/{u}", z[0], "0.00")
+    to.end("z high", "upper margin over u", "({high}-{value})/{u}", z[1], "0.00")
     for name, said, now in (("low", "below", found.below), ("high", "above", found.above)):
         end = f"{{z {name}}}"
         tail = to.tail(end)

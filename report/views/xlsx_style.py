@@ -69,6 +69,10 @@ _FORMATS: dict[str, dict[str, Any]] = {
 }
 
 
+_FORMATS["chosen"] = _FORMATS["input"] | {"align": "left", "indent": 1}
+"""A word that may be changed, beside a number."""
+
+
 class Style:
     """Formats of a workbook by name, each made once, in the order in which they are first used."""
 
