@@ -34,29 +34,42 @@ function secondOrder({ labels, data, errors, pairs, cells, names, rough }) {
     return { slopes: slopes(near), far: cells.map((cell) => value(far, cell)) };
   }));
   return cells.map((cell, c) => {
-    let own = 0, bent = 0, turned = 0, off = 0, alone = 0;
-    const now = value(here, cell), third = (j, i) => (beside[j][0].slopes[c][i] - 2 * first[c][i] + beside[j][1].slopes[c][i]) / STEP ** 2;
-    // A slope is known to the square of the step that it is asked by.
-    const slope = first[c].map((one, i) => (Math.abs(one) > MOVE ** 2 * Math.abs(third(i, i)) ? one : 0));
-    beside.forEach(([up, down], j) => {
-      own += slope[j] ** 2;
-      const away = [(up.far[c] - now - FAR * slope[j]) ** 2, (down.far[c] - now + FAR * slope[j]) ** 2];
-      for (const one of away) off += one || 0;
-      ways.forEach(({ fourth }, i) => {
-        const second = (up.slopes[c][i] - down.slopes[c][i]) / (2 * STEP);
-        bent += second ** 2 * (i === j ? (fourth - 1) / 4 : 1 / 2);
-        turned += slope[i] * third(j, i) * (i === j ? fourth / 3 : 1);
-        if (i === j && away[0] + away[1] >= 0) alone += second ** 2 / 2;
-      });
-    });
-    const more = bent + turned, least = COUNTS * own, rounding = (ROUNDING * now) ** 2, nothing = own <= rounding;
-    if (nothing && more <= rounding) return off > rounding ? Infinity : 0; // of third order, or more
-    const little = Math.max(bent, Math.abs(more)) <= least;
-    if (rough[c] > 1 || (rough[c] && !little) || names[c].some((name) => torn.has(name))) return NaN;
-    if (!nothing && (more < -own / 2 || (little && off / FAR ** 4 > least))) return NaN;
-    if (alone > COUNTS * (own + bent) && alone > SHARP * off / FAR ** 4) return own ? NaN : Infinity; // slopes change here at once, and no further
-    return little ? 0 : own + more > 0 ? more : bent;
+    const sides = beside.map((both) => both.map((one) => ({ slopes: one.slopes[c], far: one.far[c] }))), now = value(here, cell);
+    return counted(termsOf(ways, first[c], sides, now), now, rough[c], names[c].some((name) => torn.has(name)));
   });
+}
+
+// The parts of the variance of a cell, of its slopes along every way, and of slopes and values to either side (`beside`): of
+// first order (`own`), of squared second derivatives (`bent`; those along one way `alone`), of third derivatives times
+// slopes (`turned`), and by how much the cell is off its tangent far away (`off`).
+function termsOf(ways, first, beside, now) {
+  let own = 0, bent = 0, turned = 0, off = 0, alone = 0;
+  const third = (j, i) => (beside[j][0].slopes[i] - 2 * first[i] + beside[j][1].slopes[i]) / STEP ** 2;
+  // A slope is known to the square of the step that it is asked by.
+  const slope = first.map((one, i) => (Math.abs(one) > MOVE ** 2 * Math.abs(third(i, i)) ? one : 0));
+  beside.forEach(([up, down], j) => {
+    own += slope[j] ** 2;
+    const away = [(up.far - now - FAR * slope[j]) ** 2, (down.far - now + FAR * slope[j]) ** 2];
+    for (const one of away) off += one || 0;
+    ways.forEach(({ fourth }, i) => {
+      const second = (up.slopes[i] - down.slopes[i]) / (2 * STEP);
+      bent += second ** 2 * (i === j ? (fourth - 1) / 4 : 1 / 2);
+      turned += slope[i] * third(j, i) * (i === j ? fourth / 3 : 1);
+      if (i === j && away[0] + away[1] >= 0) alone += second ** 2 / 2;
+    });
+  });
+  return { own, bent, turned, off, alone };
+}
+
+// What of these terms counts for a cell whose value is `now`; `torn`: its sums run over other rows beside.
+function counted({ own, bent, turned, off, alone }, now, rough, torn) {
+  const more = bent + turned, least = COUNTS * own, rounding = (ROUNDING * now) ** 2, nothing = own <= rounding;
+  if (nothing && more <= rounding) return off > rounding ? Infinity : 0; // of third order, or more
+  const little = Math.max(bent, Math.abs(more)) <= least;
+  if (rough > 1 || (rough && !little) || torn) return NaN;
+  if (!nothing && (more < -own / 2 || (little && off / FAR ** 4 > least))) return NaN;
+  if (alone > COUNTS * (own + bent) && alone > SHARP * off / FAR ** 4) return own ? NaN : Infinity; // slopes change here at once, and no further
+  return little ? 0 : own + more > 0 ? more : bent;
 }
 
 if (!self.document) self.onmessage = ({ data: { looked, ...asked } }) => {
