@@ -365,6 +365,12 @@ def test_a_word_in_another_case_is_no_other_group(
         (("B40", "B4O", "B40"), ":3:3: instrument: 'B4O' (reading 2) is nearly 'B40' (readings 1 and 3)"),
         (("B40", "\u041240", "B40"), ":3:3: instrument: '\u041240' (reading 2) is nearly 'B40'"),
         (("S01", "S02", "S1"), ":4:3: instrument: 'S1' (reading 3) is nearly 'S01' (reading 1)"),
+        (("S-2", "S2", "S-2"), ":3:3: instrument: 'S2' (reading 2) is nearly 'S-2' (readings 1 and 3)"),
+        (("S-2", "S-2", "S_2"), ":4:3: instrument: 'S_2' (reading 3) is nearly 'S-2' (readings 1 and 2)"),
+        (("S\u20132", "S 2", "S 2"), ":2:3: instrument: 'S\u20132' (reading 1) is nearly 'S 2'"),
+        (("S.2", "S.2", "s02"), ":4:3: instrument: 's02' (reading 3) is nearly 'S.2'"),
+        (("S2.", "S2", "S2"), ":2:3: instrument: 'S2.' (reading 1) is nearly 'S2'"),
+        (("1-1", "1.1", "1-1"), ":3:3: instrument: '1.1' (reading 2) is nearly '1-1'"),
         (("Aldrich", "Aldrich", "Aldrch"), ":4:3: instrument: 'Aldrch' (reading 3) is nearly 'Aldrich'"),
         (
             ("steel", "setel", "steel"),
@@ -374,6 +380,8 @@ def test_a_word_in_another_case_is_no_other_group(
         (("A1", "A2", "A1", "A11", "A12"), ""),
         (("butane", "butene", "butane", "batchA", "batchB", "CO2", "C2"), ""),
         (("plant", "planet"), ""),
+        (("1-11", "11-1", "111a"), ""),
+        (("-5 K", "5 K", "Cl-", "Cl", "0.5 M", "5 M"), ""),
     ],
 )
 def test_a_word_that_is_nearly_another_is_told(words: tuple[str, ...], said: str, tmp_path: Path) -> None:

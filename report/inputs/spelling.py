@@ -19,6 +19,8 @@ _AS_DRAWN = str.maketrans(
 """Signs that look alike: digits and letters, and the letters of three alphabets."""
 _DASHES = re.compile("[\u2010-\u2015\u2212\ufe58\ufe63\uff0d]")
 _ZEROS = re.compile(r"(?<![0-9.,])0+(?=[0-9])")
+_MARKS = re.compile(r"(?<=[^\W_])[-_.\s]+(?=[^\W_])|[_.]+$")
+"""Marks within a word or that end it: one that begins a number is a sign, and ``Cl-`` is not ``Cl``."""
 _SHORTEST = 5
 """In shorter words one letter more is another word."""
 
@@ -55,10 +57,12 @@ def in_case(word: str, other: str, rows: Mapping[str, Sequence[int]]) -> bool:
 def alike(rows: Mapping[str, Sequence[int]]) -> Iterator[tuple[str, str]]:
     """Words that may be one, that of fewer rows (or the later one) first.
 
-    They look the same (``B4O`` and ``B40``, ``S01`` and ``S1``); or they differ in case alone, and
+    They look the same (``B4O`` and ``B40``, ``S01`` and ``S1``); or a hyphen, underscore, blank or point is
+    missing in one or another one of these (``S-2``, ``S_2`` and ``S2``); or they differ in case alone, and
     each stands in several rows (``CO`` and ``Co``); or one stands in a single row and the other
     in several, and they differ by a small letter more within the word, or by two that are exchanged. Other
-    numbers and other letters tell rows apart (``A1`` and ``A2``, ``butane`` and ``butene``).
+    numbers and other letters tell rows apart (``A1`` and ``A2``, ``1-11`` and ``11-1``, ``butane`` and
+    ``butene``).
 
     Parameters
     ----------
@@ -69,19 +73,41 @@ def alike(rows: Mapping[str, Sequence[int]]) -> Iterator[tuple[str, str]]:
     --------
     >>> list(alike({"Aldrich": [1, 2], "Aldrcih": [3], "B40": [4, 5], "B4O": [6], "B41": [7]}))
     [('B4O', 'B40'), ('Aldrcih', 'Aldrich')]
+    >>> list(alike({"S-2": [1, 2], "S2": [3], "s_02": [4], "1-11": [5], "11-1": [6]}))
+    [('S2', 'S-2'), ('s_02', 'S-2')]
     >>> list(alike({"A1": [1, 2], "A2": [3], "butane": [5, 6], "butene": [7], "CO2": [8], "C2": [9]}))
     []
     """
-    for seen in (str.casefold, lambda word: word.translate(_AS_DRAWN), lambda word: _ZEROS.sub("", word)):
+    told: set[tuple[str, str]] = set()
+    for seen in (str.casefold, lambda word: word.translate(_AS_DRAWN), _without_zeros, _without_marks):
         first: dict[str, str] = {}
         for word in rows:
             other = first.setdefault(seen(word), word)
-            if other != word and (seen is not str.casefold or in_case(word, other, rows)):
-                yield (word, other) if len(rows[word]) <= len(rows[other]) else (other, word)
+            if other == word or (word.casefold() == other.casefold() and not in_case(word, other, rows)):
+                continue
+            pair = (word, other) if len(rows[word]) <= len(rows[other]) else (other, word)
+            if pair not in told:
+                told.add(pair)
+                yield pair
     of = {slip: word for word, own in rows.items() if len(own) > 1 for slip in _slips(word)}
     for word in (word for word, own in rows.items() if len(own) == 1):
         if other := of.get(word) or next((each for each in _slips(word) if len(rows.get(each, ())) > 1), ""):
             yield word, other
+
+
+def _without_zeros(word: str) -> str:
+    return _ZEROS.sub("", word)
+
+
+def _without_marks(word: str) -> str:
+    """A word without the marks within it, in one case; between digits they are one mark."""
+
+    def plain(mark: re.Match[str]) -> str:
+        around = word[mark.start() - 1], word[mark.end() : mark.end() + 1]
+        return "-" if all(map(str.isdigit, around)) else ""
+
+    word = _without_zeros(_DASHES.sub("-", word.casefold()))
+    return _MARKS.sub(plain, word)
 
 
 def _slips(word: str) -> Iterator[str]:
