@@ -345,6 +345,8 @@ CASES: dict[str, Callable[[], None]] = {
     "LS407": lambda: campaign(
         csv="test,v [m/s],u(v) [mm/s],e [1],x_p [um]\n1,2.334,-1,0.530,23.5\n2,2.940,1.5,0.512,29.7\n"
     ),
+    "LS408": lambda: campaign(csv=CSV.replace(",", ";").replace(".", ",").replace("29,7", "29.7")),
+    "LS409": lambda: campaign(csv="test;v [m/s];e [1];x_p [um]\n1;2,334;1;2,350\n2;2,940;1;2,970\n"),
     "LS421": csv("x_p [um]", "x_p [Um]"),
     "LS422": csv("x_p [um]", "x_p [kg]"),
     "LS423": csv("e [1]", "e [dB]"),

@@ -106,17 +106,42 @@ def test_words_do_not_tell_what_a_comma_is(read: Reader) -> None:
 THOUSANDS = "test;v [m/s];e [1];x_p [um]\n1;2,334;1;2,350\n2;2,940;1;2,970\n"
 
 
+def test_what_could_be_thousands_is_refused(read: Reader, findings: Findings) -> None:
+    """Each a little more than two, or some two thousand: told once, with what else a comma may be."""
+    assert findings(csv=THOUSANDS) == ["LS409 measurements.csv:2:3+5"]
+    assert findings(csv="sep=;\n" + THOUSANDS) == ["LS409 measurements.csv:3:3+5"]
+    with pytest.raises(InputError, match=r"v is '2,334'.*numbers like this: 4") as caught:
+        read(csv=THOUSANDS)
+    assert (
+        "write '2.334' or '2334', whichever is meant, and all others so" in caught.value.diagnostics[0].hint
+    )
+    assert "LS401 measurements.csv:2:15+9" in findings(csv=GERMAN.replace("23,5", "1,002,970"))
+
+
 @pytest.mark.parametrize(
-    ("csv", "refused"),
+    ("number", "hint"),
     [
-        (THOUSANDS, 4),  # each a little more than two, or some two thousand
-        (GERMAN.replace("29,7", "29.7"), 5),
-        (GERMAN.replace("29,7", "1.029,7"), 6),
+        ("29.7", "write '29,7'"),
+        ("29.7(2)", "write '29,7(2)'"),
+        ("2.97e1", "write '2,97e1'"),
+        ("1.029,7", "write '1029,7'"),
+        ("1.029", "write '1,029' or '1029', whichever is meant"),
+        ("1.029.700,5", "write '1029700,5'"),
     ],
 )
-def test_what_could_be_thousands_is_refused(csv: str, refused: int, findings: Findings) -> None:
-    assert [each.split()[0] for each in findings(csv=csv)] == ["LS402"] * refused
-    assert "LS401 measurements.csv:2:15+9" in findings(csv=GERMAN.replace("23,5", "1,002,970"))
+def test_a_point_among_decimal_commas_is_told_alone(number: str, hint: str, read: Reader) -> None:
+    with pytest.raises(InputError) as caught:
+        read(csv=GERMAN.replace("29,7", number))
+    (found,) = caught.value.diagnostics
+    assert (found.code, str(found.at), found.hint) == ("LS408", "measurements.csv:3:15", hint)
+
+
+def test_what_there_is_less_of_is_wrong(read: Reader, findings: Findings) -> None:
+    """A comma among points, too; what is no number at all is told as that, and of a row left out, nothing."""
+    assert findings(csv=CSV.replace(",", ";").replace("29.7", "29,7")) == ["LS402 measurements.csv:3:15+4"]
+    assert findings(csv=GERMAN.replace("29,7", "24.11.2026")) == ["LS401 measurements.csv:3:15+10"]
+    left = ended(GERMAN, ";").replace("um];", "um];left out", 1) + "3;2.9;0.5;30.1;drop was tilted\n"
+    assert [p and p.text for p in read(csv=left).measured["v"]] == ["2.334", "2.940"]
 
 
 def test_semicolons_separate_measurements_alone(findings: Findings) -> None:

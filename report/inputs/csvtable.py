@@ -2,7 +2,7 @@
 
 A table of measurements may be separated by semicolons, too, as spreadsheets write it where the comma is
 decimal; a line ``sep=;`` above its names says so, as Excel reads it. Its numbers then have decimal points, or
-all of them decimal commas, of which one at least can mean nothing else.
+all of them decimal commas, of which one at least can mean nothing else: what most of them have is meant.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from itertools import compress, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..messages.errors import close, listing, suggest
-from .keys import for_left_out
+from .keys import LEFT_OUT, for_left_out
 from .number_text import NumberError, read_number
 
 if TYPE_CHECKING:
@@ -34,6 +34,10 @@ _COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<rest>[0-9]+(?:[eE][+-]?[0-9]+)?
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 """What may mean a number and a thousand times it: 1,234."""
 _POINT = re.compile(r"[+-]?[0-9]*\.[0-9].*")
+_POINTED = re.compile(r"[+-]?[0-9]*\.[0-9]+(?:[eE][+-]?[0-9]+)?(?:\([0-9]+\))?")
+"""A number with a decimal point."""
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]+")
+"""One with points between its thousands."""
 _SAYS = re.compile(r'\s*"?sep=(?P<separator>[,;])"?[ \t]*(?:\r\n?|\n)', re.IGNORECASE)
 """A first line that says what stands between the fields."""
 _QUOTE = re.compile(r'"("?)')
@@ -109,7 +113,7 @@ def read_table(
         separator = says["separator"]
     rows = _rows(source, findings, separator, says.end() if says else 0)
     if separator == ";":
-        rows = _pointed(rows)
+        rows = _pointed(source, rows, findings)
     while rows and _is_blank(rows[-1]):
         rows.pop()
     if not rows:
@@ -215,7 +219,7 @@ def is_number(text: str) -> bool:
     return True
 
 
-def _pointed(rows: list[CsvRow]) -> list[CsvRow]:
+def _pointed(source: Source, rows: list[CsvRow], findings: Findings) -> list[CsvRow]:
     """Rows with decimal points for decimal commas, if it is certain that they are: of columns of numbers."""
     header, *body = [row for row in rows if not _is_blank(row)] or [CsvRow([], 0)]
     worded = {
@@ -228,14 +232,58 @@ def _pointed(rows: list[CsvRow]) -> list[CsvRow]:
     numbers = [[field for place, field in enumerate(row.fields) if place not in worded] for row in body]
     texts = [field.text for fields in numbers for field in fields]
     commas = [text for text in texts if _COMMA.fullmatch(text)]
-    if all(map(_THOUSANDS.fullmatch, commas)) or any(map(_POINT.fullmatch, texts)):
+    points = [text for text in texts if _POINT.fullmatch(text)]
+    doubtful = all(map(_THOUSANDS.fullmatch, commas))
+    if not commas or (points and (doubtful or len(points) >= len(commas))):
         return rows  # what has a comma is refused where it is read
 
+    names = [head.text.partition("[")[0].strip() for head in header.fields]
+    rows_by_name = [list(zip(names, row.fields, strict=False)) for row in body]
+    named = [
+        each
+        for row in rows_by_name
+        if not any(name == LEFT_OUT and field.text for name, field in row)  # nothing in it is wrong
+        for place, each in enumerate(row)
+        if place not in worded
+    ]
+    if doubtful:
+        _tell_doubtful(source, [each for each in named if _COMMA.fullmatch(each[1].text)], findings)
+    else:
+        _tell_points(source, named, findings)
+
     def pointed(place: int, field: Field) -> Field:
-        told = _COMMA.fullmatch(field.text) and place not in worded
-        return field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", field.text)) if told else field
+        text = _without_points(field.text)  # what has points and a comma was told: it is read without
+        told = _COMMA.fullmatch(text) and place not in worded
+        return field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", text)) if told else field
 
     return [row._replace(fields=[pointed(*each) for each in enumerate(row.fields)]) for row in rows]
+
+
+def _tell_doubtful(source: Source, found: Sequence[tuple[str, Field]], findings: Findings) -> None:
+    """Tell once of numbers whose commas may all stand between thousands."""
+    for name, field in found[:1]:
+        words = {"point": field.text.replace(",", "."), "whole": field.text.replace(",", "")}
+        at = source.at(field.offset, field.length)
+        findings.add("LS409", at, name=name, text=field.text, count=len(found), **words)
+
+
+def _tell_points(source: Source, found: Sequence[tuple[str, Field]], findings: Findings) -> None:
+    """Tell each number with a point, where others have decimal commas."""
+    for name, field in found:
+        example, either = _without_points(field.text), ""
+        if example == field.text:
+            if not _POINTED.fullmatch(field.text):
+                continue  # no number, which is told where it is read
+            example = field.text.replace(".", ",")
+            if _THOUSANDS.fullmatch(example):
+                either = f" or '{field.text.replace('.', '')}', whichever is meant"
+        at = source.at(field.offset, field.length)
+        findings.add("LS408", at, name=name, text=field.text, example=example, thousands=either)
+
+
+def _without_points(text: str) -> str:
+    """A number without points between its thousands, if a comma stands behind them."""
+    return text.replace(".", "") if _GROUPED.fullmatch(text) else text
 
 
 def _like_number(text: str) -> bool:

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["ANY", "MEASURED", "PUBLISHED", "TABLES", "Key", "fixed", "for_left_out"]
+__all__ = ["ANY", "LEFT_OUT", "MEASURED", "PUBLISHED", "TABLES", "Key", "fixed", "for_left_out"]
 
 ANY = "*"
+LEFT_OUT = "left out"
+"""The column that says why a test takes no part; empty where it does."""
 _LEAVING = {
     "exclude",
     "excluded",

@@ -15,6 +15,7 @@ from ..distribution import Error
 from ..messages.errors import Findings, close, listing
 from ..workbook import RowTable
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
+from .keys import LEFT_OUT
 from .number_text import NumberError, read_printed, read_value
 from .spelling import Alike, alike, in_case, same
 from .taken import Taken, alone
@@ -40,12 +41,10 @@ __all__ = [
 MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
 
-LEFT_OUT = "left out"
 _GAP = f"say why it is missing in a column '{LEFT_OUT}': the row takes no part then"
 _ONLY_U = "what has an uncertainty has a value: leave out both, or neither"
 _NOWHERE = "no row of this column has one: leave out what the method does not need"
 _EXCLUDING = re.compile(r"(?i)(exclu|omit|reject|discard|skip|ignor|outlier|left[_-]?out|leave[ _-]?out).*")
-"""The column that says why a test takes no part; empty where it does."""
 
 _HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _TEST = re.compile(r"0*[1-9][0-9]{0,8}")

@@ -242,6 +242,19 @@ CATALOGUE: dict[str, Entry] = {
         "a standard uncertainty of at least 0",
         "without the column, the uncertainty follows from the printed digits",
     ),
+    "LS408": Entry(
+        "point among decimal commas",
+        "{name} has a point: '{text}', where other numbers of the table have decimal commas",
+        "decimal commas in the whole table, or decimal points, and no marks between thousands",
+        "write '{example}'{thousands}",
+    ),
+    "LS409": Entry(
+        "decimal comma or thousands",
+        "{name} is '{text}': every comma in the numbers of this table may stand between thousands, too "
+        "(numbers like this: {count})",
+        "decimal points; or decimal commas, if one of them has more or fewer than three digits behind it",
+        "write '{point}' or '{whole}', whichever is meant, and all others so",
+    ),
     "LS421": Entry("unknown unit", "unknown unit '{text}'", "{known}", "{suggestion}"),
     "LS422": Entry("wrong dimension", "{name} is in '{text}', which does not convert to {unit}", "{known}"),
     "LS423": Entry(
