@@ -78,6 +78,19 @@ q = root(q * x, y, "nothing", low=3, high=2)
 """,
         {1: "have they changed places?", 5: "but the formula gives", 7: "low is not below high"},
     ),
+    "what a fit shall find": (
+        """\
+a = unknown("where it begins", "N", start=-2.5, positive=True)
+b = unknown("slope", "Nmm")
+c = unknown("power", start=3, low=0, high=2)
+d = unknown("factor", "N/mm", start=0.5, low=0.1, high=2, positive=True)
+line = fit(y, a + b * x**c)
+other = fit(y, d * x)
+e = let(a / b, "quotient of what is wrong", "mm")
+""",
+        {0: "the start, -2.5, has to be greater than 0 N: positive, low and high say so",
+         1: "the unit 'Nmm' is unknown", 2: "the start, 3, has to be between 0 and 2: positive"},
+    ),
     "LaTeX that TeX does not take": (
         """\
 a = let(2*x, "twice", latex="a_{2")

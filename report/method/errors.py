@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar, cast
 
-from sympy import Basic, Symbol
+from sympy import Basic, Dummy
 
 from ...derivations.equation import Ledger
 from ..cells.units import check_column
@@ -27,8 +27,8 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class _Failed(Symbol):  # type: ignore[misc]
-    """The place of what could not be declared."""
+class _Failed(Dummy):  # type: ignore[misc]
+    """The place of what could not be declared; of two, nobody knows that they are the same."""
 
     __slots__ = ()
 

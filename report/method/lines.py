@@ -141,11 +141,20 @@ class PointsLine(Declaration):
 
 @dataclass(frozen=True)
 class UnknownLine(Declaration):
-    """What a root or a fit will find."""
+    """What a root or a fit will find; what is wrong is told in its own line, not in that of the fit."""
 
     start: Expr | None = None
     bounds: Bounds = field(default_factory=Bounds)
     of: Any = None  # a column of whose rows there is one of each
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.unit:
+            size_of("", self.unit)
+        start = self.start
+        if start is not None and start.is_number and not self.bounds.allow(float(start)):
+            said = f"has to be {self.bounds}{behind(self.unit or '1')}: positive, low and high say so"
+            raise SheetError(f"the start, {float(start):.15g}, {said}")
 
 
 @dataclass(frozen=True)
@@ -174,7 +183,8 @@ def size_of(name: str, unit: str) -> ParsedUnit:
     except UnitError as error:
         hint = f"; {error.suggestion}" if error.suggestion else ""
         kind = "is unknown" if error.code == "LS421" else "cannot be read"
-        raise SheetError(f"{name}: the unit {error.text!r} {kind}{hint}", name) from None
+        whose = f"{name}: " if name else ""
+        raise SheetError(f"{whose}the unit {error.text!r} {kind}{hint}", name) from None
 
 
 def _is_unit(text: str) -> bool:
