@@ -36,6 +36,8 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:1", "the limit of x is in 'kg'"),
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
         ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
+        ("report.toml", "", '[uncertainty]\nz = "scatter"\n', "7:1", 'together: paired = ["x", "y"]'),
+        ("report.toml", "", '[uncertainty]\nm = "u = 1 N"\n', "7:1", "from what is stated of x, y and K"),
         ("report.toml", "2.00", "2.00(3)e-1", "3:6", "stands before its uncertainty: 2.00e-1(3)"),
         ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
         ("report.toml", "N/mm", "N/mm exact", "3:11", "a comma stands before what is stated: ', exact'"),

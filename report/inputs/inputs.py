@@ -7,7 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -282,7 +282,7 @@ class _Reader:
         measurements = self.measurements()
         uncertainty = Stated({})
         if self.workbook and measurements is not None and "uncertainty" in toml.data:
-            uncertainty, parameters, measurements = self.uncertainty(parameters, measurements)
+            uncertainty, parameters, measurements = self.uncertainty(parameters, given, measurements)
         computable = not self.findings.found
         words = None if measurements is None else {each for own in measurements for each in own.every_word}
         published = self.published(words)
@@ -475,14 +475,15 @@ class _Reader:
         return measurements.beside(known, [of.name for of in columns])
 
     def uncertainty(
-        self, parameters: dict[str, Printed], measurements: tuple[Measurements, ...]
+        self, parameters: dict[str, Printed], given: frozenset[str], measurements: tuple[Measurements, ...]
     ) -> tuple[Stated, dict[str, Printed], tuple[Measurements, ...]]:
         """Read what is stated of columns and parameters, and state it of their numbers."""
         declared = self.workbook.declared if self.workbook else {}
         single = {name: (printed,) for name, printed in parameters.items()}
         every = {name: column for table in measurements for name, column in table.measured.items()}
         numbers = {name: every[name] for name in declared if every.get(name)}
-        stated = read_uncertainty(self.tables, numbers | single, declared, measurements, self.said)
+        sheet = partial(self.workbook.sheet, given) if self.workbook else None
+        stated = read_uncertainty(self.tables, numbers | single, declared, measurements, self.said, sheet)
         parameters = {name: printed for name, (printed,) in stated.of(single).items()}
 
         def said(table: Measurements) -> Measurements:

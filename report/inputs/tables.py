@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import Findings, Location, close, listing, suggest
@@ -25,11 +25,18 @@ class TomlTables:
     def __init__(self, toml: TomlFile, findings: Findings) -> None:
         self.toml, self.findings = toml, findings
 
-    def keys(self, table: tuple[str, ...], own: Iterable[str] = (), alone: bool = False) -> dict[str, Any]:
+    def keys(
+        self,
+        table: tuple[str, ...],
+        own: Iterable[str] = (),
+        alone: bool = False,
+        why_not: Callable[[str], str] = lambda _: "",
+    ) -> dict[str, Any]:
         """Return a table after a look at its keys; an absent one, or no table at all, is empty.
 
         `table`: its place, one of :data:`~loopsheet.report.inputs.keys.TABLES`. `own`: what there may be
-        besides, names of the folder's own; `alone`: in place of all others.
+        besides, names of the folder's own; `alone`: in place of all others. `why_not`: what helps with a key
+        that has a meaning elsewhere.
         """
         data: Any = self.toml.data
         for name in table:
@@ -42,7 +49,7 @@ class TomlTables:
             return {}
         for key in data:
             if key not in known:
-                suggestion = for_left_out(key) or suggest(key, known)
+                suggestion = for_left_out(key) or why_not(key) or suggest(key, known)
                 allowed = listing(known) if known else "no key"
                 self.findings.add(
                     "LS203",

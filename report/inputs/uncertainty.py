@@ -19,7 +19,7 @@ groups = [[1, 2], [3, 4]]                # or the same in the tests of a group, 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -28,6 +28,7 @@ from ...derivations.unit_text import parse_unit
 from ..distribution import SCATTER
 from ..messages.errors import listing, suggest
 from ..quantity import there
+from ..sheet import Given, SheetError
 from ..workbook import Measured
 from .keys import ANY, fixed
 from .number_text import NumberError, read_number
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from ..distribution import Error, Shape
     from ..messages.errors import Location
     from ..quantity import Printed
+    from ..sheet import Sheet
     from .measurements import Measurements
     from .number_text import Declared
     from .tables import TomlTables
@@ -130,6 +132,7 @@ def read_uncertainty(
     declared: Mapping[str, Declared],
     measured: Sequence[Measurements],
     said: Conventions,
+    sheet: Callable[[], Sheet] | None = None,
 ) -> Stated:
     """Read the section; what is wrong with it is told where it stands.
 
@@ -145,9 +148,11 @@ def read_uncertainty(
         The tables of rows: a word in one may say which of its rows share an error.
     said : Conventions
         What the folder says of all uncertainties.
+    sheet : callable or None
+        Returns the columns of the workbook: of one that is computed nothing can be stated.
     """
     reader = _Reader(tables, numbers, declared, measured, said)
-    written = tables.keys((SECTION,), numbers)
+    written = tables.keys((SECTION,), numbers, why_not=lambda key: reader.of_computed(key, sheet))
     paired = read_paired(tables, SECTION, numbers, measured) if "paired" in written else ()
     columns = {name: reader.column(name) for name in written if name in numbers}
     columns |= {name: reader.of_readings(name, name in columns) for name in paired}
@@ -240,6 +245,35 @@ class _Reader:
         if read is None or self.rows[name] != 1:
             return Of(numbers, declared.bounds)
         return Of(numbers, declared.bounds, lambda table: read(table, declared, at))
+
+    def of_computed(self, name: str, sheet: Callable[[], Sheet] | None) -> str:
+        """What to state in the place of the uncertainty of a computed column; nothing of what is none."""
+        if sheet is None:
+            return ""
+        try:
+            columns = sheet()
+        except (SheetError, TypeError):  # which is told where the workbook is laid out
+            return ""
+        if name not in columns or isinstance(columns[name].rule, Given):
+            return ""
+        rests = [
+            each.name
+            for each in columns.ancestors(columns[name])
+            if not each.exact and any(p.stated != () for p in self.numbers.get(each.name, ()))
+        ]
+        if not rests:
+            return f"{name} is computed from what is exact"
+        hint = (
+            f"{name} is computed: its uncertainty follows from what is stated of {listing(rests, last='and')}"
+        )
+        tables = {id(self.of_rows[each]): self.of_rows[each] for each in rests if each in self.of_rows}
+        if SCATTER not in str(self.toml.data[SECTION][name]) or len(tables) != 1:
+            return hint
+        readings = [each for each in rests if each in self.of_rows]
+        if len(readings) == 1:
+            return f'{hint}; for repeated readings: {readings[0]} = "{SCATTER}"'
+        paired = ", ".join(f'"{each}"' for each in readings)
+        return f"{hint}; for repeated readings that were taken together: paired = [{paired}]"
 
     def column(self, name: str) -> StatedErrors | None:
         """What is said of a column or a parameter, which says nothing itself."""
