@@ -22,6 +22,7 @@ class Lab(Method, rows="readings", headline="m"):
 """
 TABLE = "reading,x [mm],y [N]\n1,1.00,2.0\n2,1.10,2.2\n3,1.30,2.7\n"
 FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
+EXPANDED = FULLER.replace("z [N]", "U(y) [mN]")
 NOTED = "reading,x [mm],y [N],remark\n1,1,00,2.0,\n2,1.10,2.2,\n3,1.30,2.7,\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
@@ -67,6 +68,8 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("measurements.csv", "1.10", "-", "3:3", "the cell of what was not measured is empty"),
         ("measurements.csv", "3,1.30", "2,1.30", "4:1", "reading 2 is there twice, first in line 3"),
         ("measurements.csv", TABLE, FULLER, "1:22", "allowed: reading, x, y, u(x), u(y) or left out"),
+        ("measurements.csv", TABLE, EXPANDED, "1:22", "write 'u(y) [mN]', and below it standard"),
+        ("measurements.csv", TABLE, EXPANDED.replace(" [mN]", ""), "1:22", "write 'u(y) [N]', and below it"),
         ("measurements.csv", "reading", "raeding", "1:1", "did you mean 'reading'?"),
     ],
 )  # fmt: skip

@@ -605,6 +605,7 @@ def test_other_encodings_are_one_finding(encoding: str, findings: Findings) -> N
         ("x_p [mm", "x_p [mm]"),
         ("x_p (s)", "x_p [m]"),
         ("x_p (depth)", "x_p [m]"),
+        ("imprint (mm)", "imprint [mm]"),
         ("x_p depth", None),
         ("x_p_2", None),
     ],

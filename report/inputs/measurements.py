@@ -47,6 +47,9 @@ _NOWHERE = "no row of this column has one: leave out what the method does not ne
 _EXCLUDING = re.compile(r"(?i)(exclu|omit|reject|discard|skip|ignor|outlier|left[_-]?out|leave[ _-]?out).*")
 
 _HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_OTHER_BRACKETS = re.compile(r"(?P<name>\w+)\s*[(\[{<]\s*(?P<unit>[^()\[\]{}<>]+)")
+_EXPANDED = re.compile(r"U\s?\((?P<name>[^()\[\]]*)\)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+"""The head of a column of expanded uncertainties, which there is not."""
 _TEST = re.compile(r"0*[1-9][0-9]{0,8}")
 
 
@@ -468,8 +471,14 @@ def read_head(
         if not field.text:
             return ColumnHead("", None, 0)
         column, unit = meant or (None, "um")
-        example = f"{column.name if column else 'x_p'} [{unit}]"
-        findings.add("LS305", table.at(field), text=field.text, example=example)
+        of = _OTHER_BRACKETS.match(field.text)
+        name, more = column.name if column else of["name"] if of else "x_p", ""
+        example = f"{name} [{unit if column or not of else of['unit']}]"
+        expanded = _EXPANDED.fullmatch(field.text)
+        if expanded and expanded["name"] in columns:
+            example = f"u({expanded['name']}) [{expanded['unit'] or columns[expanded['name']].unit}]"
+            more = ", and below it standard uncertainties: each U divided by its k"
+        findings.add("LS305", table.at(field), text=field.text, example=example, suggestion=more)
         return ColumnHead(column.name, None, 0) if column else None
     name = re.sub(r"\s", "", match["name"]) if match["name"].startswith("u(") else match["name"]
     column = columns.get(name.removeprefix("u(").removesuffix(")"))

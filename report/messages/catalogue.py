@@ -142,7 +142,7 @@ CATALOGUE: dict[str, Entry] = {
         "malformed header",
         "not a column's name and unit: '{text}'",
         "a name and its unit in square brackets",
-        "write '{example}'",
+        "write '{example}'{suggestion}",
     ),
     "LS306": Entry(
         "wrong number of fields",
