@@ -140,6 +140,21 @@ def test_a_page_tells_what_happens(
     assert not different(text, found)
 
 
+def test_the_readme_shows_the_message_of_a_wrong_file(
+    tmp_path: Path, chdir: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    chdir(tmp_path)
+    assert main(["new", "my-campaign"]) == 0
+    table = Path("my-campaign/measurements.csv")
+    title, first, second, *rest = table.read_text(encoding="utf-8").splitlines()
+    test, _, *cells = second.split(",")
+    table.write_text("\n".join([title, first, ",".join([test, "abc", *cells]), *rest]), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["check", "my-campaign"]) == 2
+    told = capsys.readouterr().err.removesuffix("\n\n1 error\n")
+    assert f"```\n{told}\n```\n" in PAGES[0].read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("page", "said"),
     [
