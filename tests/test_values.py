@@ -123,6 +123,24 @@ def test_roots_are_told_with_their_unit() -> None:
     assert "cannot be counted near z = 1e-05 m: it" in values.cell("depth").reason
 
 
+@pytest.mark.parametrize(
+    ("unit", "display", "told"),
+    [("m", "mm", ["0.01 mm", "0.02 mm"]), ("m", "like top", ["10 um", "20 um"]),
+     ("K", "degC", ["-273.15 degC", "-273.15 degC"])],
+)  # fmt: skip
+def test_roots_are_told_in_the_unit_in_which_they_are_shown(unit: str, display: str, told: list[str]) -> None:
+    z = Symbol("z", positive=True)
+    left, right = (Column(name, None, Given(), unit) for name in ("left", "right"))
+    top = Column("top", None, Given(), unit, display="um" if unit == "m" else "")
+    equation = Equation("(2)", ((z - left.symbol) * (z - right.symbol), 0 * z), "")
+    root = Root(equation, equation, z, z, Rational(0), top.symbol, top.symbol / 2)
+    sheet = Sheet((left, right, top, Column("depth", None, root, unit, display=display)))
+    values = engine.evaluate(sheet, {}, {"left": 1e-5, "right": 2e-5, "top": 1e-3})
+    assert f"more than one root here: {' and '.join(told)} (several" in values.cell("depth").reason
+    values = engine.evaluate(sheet, {}, {"left": 1e-5, "right": 1e-5, "top": 1e-3})
+    assert f"cannot be counted near z = {told[0]}: it" in values.cell("depth").reason
+
+
 def test_a_root_is_not_sought_where_a_condition_is_broken(values: Values) -> None:
     assert reasons(values, "x0_not_sought")[:2] == [
         f"#DOMAIN! x0_not_sought[1-{row}]: outside the domain of (2): b is below 1000" for row in (2, 3)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..column import shown_in
 from ..quantity import Bounds, behind
 from ..sheet import Column, Formula, GroupAxis, Iterated, MemberAxis, Root, Sheet
 from .address import address
@@ -399,14 +400,12 @@ class Values:
         if isinstance(rule, Root) and status is Status.NOROOT:
             return f"{column.source} has no root here: {rule.none}"
         if isinstance(rule, Root) and status is Status.TWOROOTS:
-            unit = behind(column.unit)
-            found = " and ".join(f"{root:.6g}{unit}" for root in self.roots.get(column.name, {}).get(row, ()))
+            found = " and ".join(self._told_roots(column, row))
             return f"{column.source} has more than one root here: {found or rule.two}" + (
                 f" ({rule.two})" if found else ""
             )
         if isinstance(rule, Root) and status is Status.UNDECIDED:
-            unit = "" if column.unit == "1" or rule.value != rule.unknown else f" {column.unit}"
-            ends = dict.fromkeys(f"{end:.6g}{unit}" for end in self.roots.get(column.name, {}).get(row, ()))
+            ends = dict.fromkeys(self._told_roots(column, row, rule.value == rule.unknown))
             where = f" near {rule.unknown} = {' to '.join(ends)}" if ends else ""
             return f"the roots of {column.source} cannot be counted{where}: {UNCERTAIN}"
         if status is Status.OVERFLOW:
@@ -421,6 +420,14 @@ class Values:
         if isinstance(rule, Formula):
             return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
         return outside
+
+    def _told_roots(self, column: Column, row: int, is_value: bool = True) -> list[str]:
+        """The roots of a cell, in the unit in which it is shown; those of another unknown as they are."""
+        roots = self.roots.get(column.name, {}).get(row, ())
+        if not is_value or not roots:
+            return [f"{root:.6g}" for root in roots]
+        size = shown_in(column, self.sheet.by_name)
+        return [f"{(root - float(size.zero)) / float(size.scale):.6g}{behind(size.text)}" for root in roots]
 
 
 def other_rows(here: Values, there: Values) -> dict[str, Mask]:
