@@ -169,6 +169,11 @@ def test_an_exact_one(campaign: str, capsys: pytest.CaptureFixture[str]) -> None
     assert told(capsys, "ball_mass", campaign) == "ball_mass = 8.363 g, exactly\n"
 
 
+def test_a_level_that_is_no_percentage_is_told_as_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["budget", "alpha_mean", "paper", "--level", "0.95"]) == 2
+    assert "'0.95'; write 95\n" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("words", [["alpha"], ["alfa"], ["alpha[1-9]"], ["x_p[1]", "--level", "100"]])
 def test_what_is_refused(campaign: str, capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
     assert main(["budget", words[0], campaign, *words[1:]]) == 2

@@ -348,7 +348,7 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
         ('alpha_mean = "1.35 .. 1.25"', "LS441", "1.35 .. 1.25"),
         ('alpha_mean = "<= 1.25 furlung"', "LS441", "furlung"),
         ("alpha_mean = 1.3", "LS205", "1.3"),
-        ('alpha_mean = "<= 1 m"', "LS422", "alpha_mean"),
+        ('alpha_mean = "<= 1 m"', "LS422", '"<= 1 m"'),
         ('alfa_mean = "<= 1"', "LS505", "alfa_mean"),
         ('"alpha[1-9]" = "<= 1"', "LS506", '"alpha[1-9]"'),
         ('"x_p[01]" = "<= 1 um"', "LS506", '"x_p[01]"'),

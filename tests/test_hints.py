@@ -25,6 +25,7 @@ FULLER = "reading,x [mm],y [N],z [N]\n1,1.00,2.0,3.0\n2,1.10,2.2,3.3\n"
 EXPANDED = FULLER.replace("z [N]", "U(y) [mN]")
 NOTED = "reading,x [mm],y [N],remark\n1,1,00,2.0,\n2,1.10,2.2,\n3,1.30,2.7,\n"
 TOML = 'workbook = "workbook.py"\n[parameters]\nK = "2.00 N/mm"\n[measurements]\nfile = "measurements.csv"\n'
+TOML_STATED = TOML.replace("2.00 ", "2.00(3) ") + '[uncertainty]\nK = "u = 0.03 N/mm"\n'
 SHARED = '[uncertainty.shared.gauge]\nof = "x"\nstated = "u = 0.01 mm"\ngroups = [[1, 2], [2, 3]]\n'
 WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
 
@@ -34,11 +35,13 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
     [
         ("report.toml", "", SHARED, "9:10", "the uncertainty of 2 in groups is stated twice"),
         ("report.toml", "", WORDED.replace("batch", "bathc"), "9:10", "a column of the table: x or y"),
-        ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:1", "the limit of x is in 'kg'"),
+        ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:5", "the limit of x is in 'kg'"),
+        ("report.toml", "", '[limits]\nx = ">= 1"\n', "7:5", "the limit of x has no unit: '1'"),
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
         ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
         ("report.toml", "", '[uncertainty]\nz = "scatter"\n', "7:1", 'together: paired = ["x", "y"]'),
         ("report.toml", "", '[uncertainty]\nm = "u = 1 N"\n', "7:1", "from what is stated of x, y and K"),
+        ("report.toml", TOML, TOML_STATED, "7:1", "what stands beside the numbers (report.toml:3:5)"),
         ("report.toml", "2.00", "2.00(3)e-1", "3:6", "stands before its uncertainty: 2.00e-1(3)"),
         ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
         ("report.toml", "N/mm", "N/mm exact", "3:11", "a comma stands before what is stated: ', exact'"),

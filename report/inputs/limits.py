@@ -79,6 +79,8 @@ class Limits:
     at: Location
     row: tuple[int, ...] | None = None
     """Which row its word stands for, where one does."""
+    text_at: Location | None = None
+    """Where its numbers stand, behind the key."""
 
     @property
     def cell(self) -> tuple[str, tuple[int, ...]]:
@@ -137,7 +139,8 @@ def _limits(tables: TomlTables, written: Collection[str], guard: Guard, ruled: b
             at = tables.toml.value(SECTION, cell, start=error.start, length=max(len(error.text), 1))
             tables.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
         else:
-            yield Limits(cell, low, high, rule, tables.toml.key(SECTION, cell))
+            at, text_at = tables.toml.key(SECTION, cell), tables.toml.value(SECTION, cell)
+            yield Limits(cell, low, high, rule, at, text_at=text_at)
 
 
 def _own_rule(rule: Guard, text: str, at: Location) -> Guard:
@@ -268,8 +271,8 @@ def check_limits(
         if each.row is None and each.address != (own := address(name, index)):
             findings.add("LS506", each.at, name=name, text=each.address, known=own)
         ends, width = [number for number in (each.low, each.high) if number], each.guard.width
-        said, unit = f"the limit of {name}", cells[name][0]
-        if all(_in_place(number, unit, said, each.at, findings) for number in ends) and width:
+        said, unit, at = f"the limit of {name}", cells[name][0], each.text_at or each.at
+        if all(_in_place(number, unit, said, at, findings) for number in ends) and width:
             _in_place(width, unit, said, each.guard.at, findings, width=True)
 
 

@@ -277,8 +277,11 @@ class _Reader:
 
     def column(self, name: str) -> StatedErrors | None:
         """What is said of a column or a parameter, which says nothing itself."""
-        if any(number.stated is not None for number in self.numbers[name]):
+        beside = next((number for number in self.numbers[name] if number.stated is not None), None)
+        if beside is not None:
+            where = next((error.where for error in beside.stated or () if error.where), beside.where)
             hint = "leave out what stands in [uncertainty], or what stands beside the numbers"
+            hint += f" ({where})" if where else ""
             self.findings.add("LS433", self.toml.key(SECTION, name), name=name, suggestion=hint)
             return None
         return self.statement((SECTION, name), name)

@@ -35,7 +35,9 @@ def _level(text: str) -> float:
     except ValueError:
         percent = 0.0
     if not 1 <= percent < 100:
-        raise argparse.ArgumentTypeError(f"not a probability from 1 to below 100 percent: '{text}'")
+        instead = f"; write {100 * percent:.12g}" if 0.01 <= percent < 1 and "%" not in text else ""
+        said = f"not a probability from 1 to below 100 percent: '{text}'{instead}"
+        raise argparse.ArgumentTypeError(said)
     return percent / 100
 
 
