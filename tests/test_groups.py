@@ -155,11 +155,12 @@ def test_it_is_told_where_it_comes_from(tmp_path: Path, capsys: pytest.CaptureFi
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("reading,instrument", "reading,device"), ("LS301", "the column 'instrument' is missing", ":1:")),
+        (("reading,instrument", "reading,device"), ("LS301", "the column 'instrument' is missing", ":1:",
+          "add 'instrument' to the first line, or write it in the place of 'device'")),
         (("reading,instrument", "reading,instrumnet"), ("LS303", "unknown column 'instrumnet'", ":1:9")),
         (("1,A,1.50", "1,,1.50"), ("LS403", "instrument is empty", ":2:3")),
     ],
-)
+)  # fmt: skip
 def test_a_table_without_its_words_is_refused(
     change: tuple[str, str], said: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -361,6 +361,7 @@ def match_columns(
     optional: Sequence[str],
     findings: Findings,
     called: Mapping[str, str] | None = None,
+    words: Sequence[str] = (),
 ) -> dict[str, int]:
     """Say where each column is, and report those that are missing, doubled or unknown.
 
@@ -378,6 +379,8 @@ def match_columns(
         Where findings go.
     called : mapping of str to str, optional
         What some of them are called in what is told.
+    words : sequence of str
+        The columns of words that nothing asks for: one of them may be what is missing, under another name.
     """
     known, own = [*required, *optional], called or {}
     strange = {name for name in names if name and name not in known}
@@ -398,14 +401,18 @@ def match_columns(
                 suggestion = f"'{renamed[0]}' is missing: did you mean that?"
                 meant[renamed[0]] += 1
             findings.add("LS303", table.at(field), text=name, known=listing(told), suggestion=suggestion)
-    lacking = (name for name in required if name not in places and not meant[own.get(name, name)])
-    without(table, findings, {name: required[name] for name in lacking})
+    lacking = [name for name in required if name not in places and not meant[own.get(name, name)]]
+    are_words = bool(words) and all(required[name] == name for name in lacking)  # they have no unit
+    others = listing(f"'{word}'" for word in words)
+    instead = f", or write it in the place of {others}" * are_words
+    without(table, findings, {name: required[name] for name in lacking}, instead)
     return places
 
 
-def without(table: CsvTable, findings: Findings, examples: Mapping[str, str]) -> None:
-    """Tell which columns a table lacks, if any, with a header for each as it may be written."""
+def without(table: CsvTable, findings: Findings, examples: Mapping[str, str], instead: str = "") -> None:
+    """Tell which columns a table lacks, if any, with a header for each as it may be written, or what else."""
     if examples:
         names = listing((f"'{name}'" for name in examples), last="and")
         told = f"s {names} are" if len(examples) > 1 else f" {names} is"
-        findings.add("LS301", table.end_of_header(), text=told, example=",".join(examples.values()))
+        example = ",".join(examples.values())
+        findings.add("LS301", table.end_of_header(), text=told, example=example, suggestion=instead)

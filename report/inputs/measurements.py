@@ -281,7 +281,8 @@ class _Reading:
         self.remarks = tuple(self._remarks(names, known))
         required |= {name: name for name in self.groups}
         optional += self.remarks
-        self.places = match_columns(self.table, names, required, optional, self.findings, {"test": called})
+        told, words = {"test": called}, [name for name in self.remarks if name not in self.groups]
+        self.places = match_columns(self.table, names, required, optional, self.findings, told, words)
 
     def _here(self, place: int, name: str, elsewhere: Collection[str]) -> str:
         """The name in a field of the first line; none, with a finding, where its column stands elsewhere."""

@@ -124,7 +124,9 @@ CATALOGUE: dict[str, Entry] = {
         "a file of its own for each table of rows",
         "the columns of each table stand in its own file, with a row for each of its rows",
     ),
-    "LS301": Entry("missing column", "the column{text} missing", hint="add '{example}' to the first line"),
+    "LS301": Entry(
+        "missing column", "the column{text} missing", hint="add '{example}' to the first line{suggestion}"
+    ),
     "LS302": Entry(
         "doubled column",
         "the column '{text}' is there twice",
