@@ -21,6 +21,7 @@ __all__ = [
     "ParsedUnit",
     "UnitError",
     "coherent",
+    "degrees",
     "examples",
     "is_pure",
     "micro",
@@ -320,6 +321,16 @@ def misfit(unit: ParsedUnit, declared: ParsedUnit) -> str:
     if declared.zero and "delta" in unit.text:
         return f"this is a temperature, no difference: say {declared.text} or K"
     return ""
+
+
+def degrees(text: str, declared: ParsedUnit) -> str:
+    """What to write in the place of a letter that is no unit of temperature, where one is declared.
+
+    >>> degrees("C", parse_unit("K")), degrees("C", parse_unit("A*s")), degrees("N", parse_unit("K"))
+    ("did you mean 'degC'?", '', '')
+    """
+    meant = {"C": "degC", "F": "degF"}.get(text.strip())
+    return f"did you mean '{meant}'?" if meant and declared.dimension == parse_unit("K").dimension else ""
 
 
 def of_differences(unit: ParsedUnit) -> str:

@@ -286,7 +286,7 @@ def _in_place(
             findings.add("LS211", at, name=said, text=number.text, unit=unit, example=example)
         else:
             known = examples(parse_open(unit))
-            findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=known)
+            findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=known, suggestion="")
         return False
     if not unit_fits(number.unit, unit, said, at, findings, width=width):
         return False

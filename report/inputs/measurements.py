@@ -10,7 +10,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, degrees, examples, is_pure, misfit, parse_unit
 from ..distribution import Error
 from ..messages.errors import Findings, close, listing
 from ..workbook import RowTable
@@ -536,7 +536,8 @@ def read_unit(
         return head, None
     if unit.dimension != expected.dimension:
         at = table.at(field, head.start, max(len(head.unit), 1))
-        findings.add("LS422", at, name=head.name, text=head.unit, unit=column.unit, known=examples(expected))
+        words = {"known": examples(expected), "suggestion": degrees(head.unit, expected)}
+        findings.add("LS422", at, name=head.name, text=head.unit, unit=column.unit, **words)
         return head, None
     if head.name == column.name and (hint := misfit(unit, expected)):
         at = table.at(field, head.start, len(head.unit))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
-from ...derivations.unit_text import UnitError, examples, misfit, parse_unit
+from ...derivations.unit_text import UnitError, degrees, examples, misfit, parse_unit
 from ..distribution import Error
 from ..quantity import Printed
 
@@ -211,6 +211,7 @@ def read_unit_of(text: str, like: Declared, at: Location, findings: Findings) ->
         return None
     if size.dimension != expected.dimension:
         words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
+        words["suggestion"] = degrees(text, expected)
         findings.add("LS422", at, **words)
         return None
     if hint := misfit(size, expected):

@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, is_pure, misfit, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, degrees, examples, is_pure, misfit, parse_unit
 from ..messages.errors import Findings, Location
 from ..quantity import behind
 from .number_text import read_value
@@ -181,7 +181,8 @@ class _Reader:
         name, wanted = self.parameter.name, self.parameter.unit
         if text:
             at, known = self.part(start, len(text)), examples(self.expected)
-            self.findings.add("LS422", at, name=name, text=text, unit=wanted, known=known)
+            hint = degrees(text, self.expected)
+            self.findings.add("LS422", at, name=name, text=text, unit=wanted, known=known, suggestion=hint)
         else:
             example = f"{digits}{self.suffix}"
             at = self.toml.value(*self.path)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import ParsedUnit, UnitError, examples, misfit, parse_open, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, degrees, examples, misfit, parse_open, parse_unit
 from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
@@ -338,7 +338,8 @@ def unit_fits(
         Whether it is a difference of values of the cell, as an uncertainty is.
     """
     if (others := _not_convertible(written, unit)) is not None:
-        findings.add("LS422", at, name=name, text=written, unit=unit, known=others)
+        hint = degrees(written, parse_open(unit))
+        findings.add("LS422", at, name=name, text=written, unit=unit, known=others, suggestion=hint)
         return False
     try:
         declared, own = parse_unit(unit), parse_unit(written)

@@ -298,7 +298,7 @@ class _Reader:
             unit = None
         if unit is None or unit.dimension != wanted.dimension or not unit.is_si:
             name, own = self.of.name, coherent(wanted)
-            self.findings.add("LS422", self.at, name=name, text=self.unit, unit=own, known=own)
+            self.findings.add("LS422", self.at, name=name, text=self.unit, unit=own, known=own, suggestion="")
 
     def allows(self, labels: Iterable[Index]) -> None:
         """Find values that the quantity cannot have."""

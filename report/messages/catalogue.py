@@ -258,7 +258,12 @@ CATALOGUE: dict[str, Entry] = {
         "write '{point}' or '{whole}', whichever is meant, and all others so",
     ),
     "LS421": Entry("unknown unit", "unknown unit '{text}'", "{known}", "{suggestion}"),
-    "LS422": Entry("wrong dimension", "{name} is in '{text}', which does not convert to {unit}", "{known}"),
+    "LS422": Entry(
+        "wrong dimension",
+        "{name} is in '{text}', which does not convert to {unit}",
+        "{known}",
+        "{suggestion}",
+    ),
     "LS423": Entry(
         "unit with a zero of its own or a logarithm",
         "'{text}' is not a multiple of an SI unit",
