@@ -327,13 +327,13 @@ def test_a_batch_has_the_derivatives_of_each(prepared: Prepared, name: str) -> N
 
 def test_a_term_that_is_dropped_is_noticed(prepared: Prepared, monkeypatch: pytest.MonkeyPatch) -> None:
     """A derivative that forgets one of the form's terms: the differences do not fit any more."""
-    whole = derivatives.diff
+    whole = derivatives.differentiated
 
     def dropped(expression: Any, symbol: Symbol) -> Expr:
         found = whole(expression, symbol)
         return found.func(*found.args[1:]) if found.is_Add else found
 
-    monkeypatch.setattr(derivatives, "diff", dropped)
+    monkeypatch.setattr(derivatives, "differentiated", dropped)
     with pytest.raises(AssertionError):
         test_the_paper_against_differences(prepared, "alpha")
 

@@ -23,7 +23,6 @@ from ..engines.elementary import log
 from ..engines.intervals import Intervals
 from ..engines.numpy import Laid, Program, evaluate
 from ..engines.numpy_beside import BESIDE, Beside
-from ..fitting.starts import begun_at
 from ..inputs.inputs import Inputs
 from ..judge.enclosure import Enclosure
 from ..laws import Samples
@@ -277,7 +276,12 @@ def _begun(inputs: Inputs, values: Values, columns: Sequence[Column]) -> Sheet:
         if each.name in fitted and each.name in values.sheet.loop_of
     }
     there = {name: value for name, value in found.items() if math.isfinite(value)}
-    return begun_at(Sheet(tuple(columns)), there)
+    sheet = Sheet(tuple(columns))
+    if not there:
+        return sheet
+    from ..fitting.starts import begun_at  # which imports sympy
+
+    return begun_at(sheet, there)
 
 
 # --- what draws tell ---------------------------------------------------------------------------------------
