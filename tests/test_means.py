@@ -63,6 +63,7 @@ def test_what_differs_more_than_its_uncertainties_make_it_is_told(tmp_path: Path
     [
         (LIKE, '[uncertainty]\nm = "u = 0.02 g"\n', "which is what chance makes"),
         (SWAPPED, "", "no uncertainty is stated that could say how far they differ"),
+        (SWAPPED, '[uncertainty]\nz = "u = 1 g"\nV = "u = 1 cm^3"\n', "no uncertainty is stated that could"),
         (SWAPPED, '[uncertainty]\nm = "scatter"\n', "which is what chance makes"),
         (
             SWAPPED,
@@ -71,7 +72,14 @@ def test_what_differs_more_than_its_uncertainties_make_it_is_told(tmp_path: Path
         ),
         (SWAPPED[:1], '[uncertainty]\nm = "u = 0.02 g"\n', "no uncertainty is stated that could"),
     ],
-    ids=["alike", "nothing stated", "their own scatter", "one error of all", "one reading"],
+    ids=[
+        "alike",
+        "nothing stated",
+        "stated of what all share",
+        "their own scatter",
+        "one error of all",
+        "one reading",
+    ],
 )
 def test_nothing_else_is(tmp_path: Path, readings: tuple[str, ...], stated: str, said: str) -> None:
     _, found = report_of(tmp_path, readings, stated)

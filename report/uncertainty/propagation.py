@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -379,13 +380,17 @@ class Spread:
         return self._misfit(residuals, own, [(curve.observed, row) for row in rows], fitted)
 
     def misfit_of_mean(self, name: str) -> Misfit | None:
-        """The same of a column about its mean."""
+        """The same of a column about its mean: stated is what makes its rows differ, all of it."""
         rows = self._valued(name)
         if not 1 < len(rows) <= MOST_ROWS or not self.knows(name):
             return None
         cells, about = [(name, row) for row in rows], np.eye(len(rows)) - 1 / len(rows)
         residuals = about @ self.values.value[name][rows]
-        return self._misfit(residuals, about @ self.covariance(cells) @ about, cells, 1)
+        found = self._misfit(residuals, about @ self.covariance(cells) @ about, cells, 1)
+        moves = self.contributions(cells) != 0
+        differing = np.any(moves, axis=0) & ~np.all(moves, axis=0)
+        stated = all(source.said for source, one in zip(self.sources, differing, strict=True) if one)
+        return found and replace(found, is_stated=stated)
 
     def _valued(self, name: str) -> list[int]:
         """The rows that have a value."""
