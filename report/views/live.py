@@ -249,8 +249,6 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
         entry["none"] = first.name if same else f"did not settle: {column.rule.none}"
     if isinstance(column.rule, Root):
         entry |= {"none": f"has no root here: {column.rule.none}", "two": column.rule.two}
-        if column.unit != "1":
-            entry["si"] = column.unit
         if column.rule.unknown_name != column.name and not column.rule.by_proof:
             entry["unknown"] = column.rule.unknown_name
     if column.conditions:

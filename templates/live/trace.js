@@ -139,9 +139,10 @@ class Trace {
 
   // Why a cell where an error begins has no value.
   why(name, row) {
-    const { source, none, two, unknown, requires, si } = this.columns[name], status = this.sheet.status[name][row];
-    const told = si && !(unknown && status === STATUS.UNDECIDED) ? ` ${si}` : "";
-    const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], (root) => brief(root) + told);
+    const { source, none, two, unknown, requires, unit, scale, zero } = this.columns[name], status = this.sheet.status[name][row];
+    // In the unit of the cell; those of another unknown as they are.
+    const own = (root) => `${brief((root - zero) / scale)}${unit === "1" ? "" : ` ${unit}`}`;
+    const roots = Array.from(this.sheet.roots[name]?.[row] ?? [], unknown && status === STATUS.UNDECIDED ? brief : own);
     if (status === STATUS.INPUT) return this.sheet.refused[name]?.[row] ?? "the datum is missing or invalid";
     if (status === STATUS.NOROOT) return `${source} ${this.columns[none]?.none ?? none}`;
     if (status === STATUS.TWOROOTS) {
