@@ -413,3 +413,13 @@ def test_what_conforms_by_the_rule_and_more_likely_does_not_is_told(
     (line,) = (each for each in capsys.readouterr().out.splitlines() if "x_p[1] conforms" in each)
     assert line.startswith("warning: ")
     assert "so large that it is more likely outside of the tolerance limits (" in line
+
+
+def test_a_value_in_the_guard_band_is_not_printed_as_its_end(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With one digit of the guard band both were 22.6."""
+    campaign = folder(tmp_path, '\n[limits]\n"x_p[1]" = ">= 19.6 um, guard = 3 um"\n')
+    said = told(capsys, "x_p[1]", campaign)
+    assert "acceptance limits at least 22.60 um" in said
+    assert "no decision on x_p[1]: it lies in the guard band" in said

@@ -94,11 +94,21 @@ def _rule(report: Report, found: Conformity) -> str:
 
 
 def accepted(report: Report, found: Conformity) -> str:
-    """The acceptance limits with as many digits as the guard band has; empty where nothing is accepted."""
-    name, (low, high) = found.budget.name, found.acceptance
+    """The acceptance limits with as many digits as the guard band has; empty where nothing is accepted.
+
+    With a digit or two more where the value would be printed as one of them, and is not that.
+    """
+    name, (low, high), value = found.budget.name, found.acceptance, found.budget.value
     if low > high:
         return ""
-    least, most = (
-        report.stated(name, end, found.guard)[0].text if math.isfinite(end) else "" for end in (low, high)
-    )
+
+    def told(finer: int) -> tuple[str, str, str]:
+        least, most, own = (
+            report.stated(name, end, found.guard / 10**finer)[0].text if math.isfinite(end) else ""
+            for end in (low, high, value)
+        )
+        return least, most, own
+
+    ways = [told(finer) for finer in range(3)]
+    least, most, _ = next((way for way in ways if way[2] not in way[:2]), ways[0])
     return span(least, most)
