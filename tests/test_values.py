@@ -123,6 +123,18 @@ def test_roots_are_told_with_their_unit() -> None:
     assert "cannot be counted near z = 1e-05 m: it" in values.cell("depth").reason
 
 
+def test_an_interval_at_whose_end_the_equation_has_no_value_is_told() -> None:
+    z, size = Symbol("z", positive=True), Column("size", None, Given(), "1")
+    equation = Equation("(2)", (1 / z - 1 / z**2, size.symbol), "")
+    root = Root(equation, equation, z, z, Rational(0), Rational(9), Rational(3))
+    values = engine.evaluate(Sheet((size, Column("depth", None, root, "1"))), {}, {"size": 0.1})
+    assert values.cell("depth").status is Status.DOMAIN
+    assert values.cell("depth").reason == (
+        "#DOMAIN! depth: outside the domain of (2): it has no value at an end of the interval of its root, "
+        "or its root gives none"
+    )
+
+
 @pytest.mark.parametrize(
     ("unit", "display", "told"),
     [("m", "mm", ["0.01 mm", "0.02 mm"]), ("m", "like top", ["10 um", "20 um"]),

@@ -419,6 +419,8 @@ class Values:
             return f"{outside}: {empty[0]} has no rows"
         if isinstance(rule, Formula):
             return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
+        if isinstance(rule, Root):
+            return f"{outside}: it has no value at an end of the interval of its root, or its root gives none"
         return outside
 
     def _told_roots(self, column: Column, row: int, is_value: bool = True) -> list[str]:

@@ -160,6 +160,7 @@ class Trace {
     const { sums, positive } = this.declared[name], { broken, layouts } = this.sheet;
     if (broken?.[name]?.[row]) return requires[broken[name][row] - 1];
     const empty = sums.find((axis) => layouts[axis].size === 0);
+    if (!empty && this.columns[name].two) return "it has no value at an end of the interval of its root, or its root gives none";
     return empty ? `${empty} has no rows` : `it gives no ${positive ? "positive" : "finite"} number here`;
   }
 
