@@ -374,7 +374,7 @@ def printed_once() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Program, "of", once(Program.of))
-        patch.setattr(bounds.Made, "of", once(bounds.Made.of))
+        patch.setattr(bounds.SheetDerivatives, "of", once(bounds.SheetDerivatives.of))
         patch.setattr(exact, "_texts", once(exact._texts))
         patch.setattr(judging, "bounds", known_bounds())
         yield

@@ -70,6 +70,7 @@ def test_what_differs_more_than_its_uncertainties_make_it_is_told(tmp_path: Path
             '[uncertainty]\nm = "exact"\nV = "exact"\nz = "u = 1 g"\n',
             "no uncertainty is stated that",
         ),
+        (SWAPPED, '[uncertainty]\nm = "exact"\nV = "exact"\nz = "exact"\n', "no uncertainty is stated that"),
         (SWAPPED[:1], '[uncertainty]\nm = "u = 0.02 g"\n', "no uncertainty is stated that could"),
     ],
     ids=[
@@ -78,6 +79,7 @@ def test_what_differs_more_than_its_uncertainties_make_it_is_told(tmp_path: Path
         "stated of what all share",
         "their own scatter",
         "one error of all",
+        "all exact",
         "one reading",
     ],
 )

@@ -387,10 +387,12 @@ class Spread:
         cells, about = [(name, row) for row in rows], np.eye(len(rows)) - 1 / len(rows)
         residuals = about @ self.values.value[name][rows]
         found = self._misfit(residuals, about @ self.covariance(cells) @ about, cells, 1)
+        if found is None:
+            return None
         moves = self.contributions(cells) != 0
         differing = np.any(moves, axis=0) & ~np.all(moves, axis=0)
         stated = all(source.said for source, one in zip(self.sources, differing, strict=True) if one)
-        return found and replace(found, is_stated=stated)
+        return replace(found, is_stated=stated)
 
     def _valued(self, name: str) -> list[int]:
         """The rows that have a value."""
