@@ -128,6 +128,10 @@ def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]
             yield name, found[0]
 
 
+def _of_misfit(known: Misfit) -> str:
+    return f"chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
+
+
 def oddities(report: Report) -> tuple[Check, ...]:
     """Check the data of a report that has been computed."""
     return tuple(_Oddities(report).checks())
@@ -391,7 +395,7 @@ class _Oddities:
             if left:
                 said = f"{curve.observed} has no uncertainty to compare the residuals with, or too many rows"
             return Check(SQUARES, curve.name, True, f"{curve.name}: {said}", self.inputs.place, skipped=left)
-        found = f"{curve.residual}: chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
+        found = f"{curve.residual}: {_of_misfit(known)}"
         if math.isfinite(known.known_by):
             found += f" by a u with {known.known_by:.0f}"
         large, small = (how(known.chi2, known.dof, known.known_by) for how in (tail, head))
@@ -413,17 +417,18 @@ class _Oddities:
     def of_mean(self, name: str, of: str) -> Check:
         """Whether what a result is the mean of differs by no more than its uncertainties make it."""
         known, every = self.report.uncertain().misfits.get(name), self.values.value[of]
-        found = f"{name} is the mean of {np.count_nonzero(np.isfinite(every))} {of}"
+        number = np.count_nonzero(np.isfinite(every))
+        found = f"{name} is the mean of {number} {of}"
         if known is None or not known.is_stated:
             said = f"{found}, of which no uncertainty is stated that could say how far they differ"
             return Check(SQUARES, name, True, said, self.inputs.place)
-        found += f": chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
+        found += f": {_of_misfit(known)}"
         large, cell = tail(known.chi2, known.dof, known.known_by), self.values.cell(name)
         if large >= RARE:
             return Check(SQUARES, name, True, f"{found}, which is what chance makes", self.inputs.place)
         about, shown = every - self.values.scalar(name), self.report.shown[name]
         far = address(of, self.values.labels(self.sheet[of])[int(np.nanargmax(np.abs(about)))])
-        scatter = math.sqrt(float(np.nanvar(every, ddof=1)) / np.count_nonzero(np.isfinite(every)))
+        scatter = math.sqrt(float(np.nanvar(every, ddof=1)) / number)
         size = rounded(shown.of(scatter) - shown.of(0.0), 2).plain + behind(shown.unit)
         said = (
             f"{found}; the probability of so much is {probability(large)}: one of them is wrong, they are of "

@@ -270,12 +270,8 @@ class _Draws:
 def _begun(inputs: Inputs, values: Values, columns: Sequence[Column]) -> Sheet:
     """A sheet whose fits begin at the estimate: draws lie about it, their author's start may be far."""
     fitted = {name for curve in inputs.workbook.curves for name in curve.fitted}
-    found = {
-        each.name: values.scalar(each.name)
-        for each in columns
-        if each.name in fitted and each.name in values.sheet.loop_of
-    }
-    there = {name: value for name, value in found.items() if math.isfinite(value)}
+    stepped = [each.name for each in columns if each.name in fitted and each.name in values.sheet.loop_of]
+    there = {name: value for name in stepped if math.isfinite(value := values.scalar(name))}
     sheet = Sheet(tuple(columns))
     if not there:
         return sheet

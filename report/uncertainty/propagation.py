@@ -377,7 +377,8 @@ class Spread:
             return None
         residuals = self.values.value[curve.residual][rows]
         own = self.covariance([(curve.residual, row) for row in rows])
-        return self._misfit(residuals, own, [(curve.observed, row) for row in rows], fitted)
+        moved = self.contributions([(curve.observed, row) for row in rows])
+        return self._misfit(residuals, own, moved, fitted)
 
     def misfit_of_mean(self, name: str) -> Misfit | None:
         """The same of a column about its mean: stated is what makes its rows differ, all of it."""
@@ -385,12 +386,11 @@ class Spread:
         if not 1 < len(rows) <= MOST_ROWS or not self.knows(name):
             return None
         cells, about = [(name, row) for row in rows], np.eye(len(rows)) - 1 / len(rows)
-        residuals = about @ self.values.value[name][rows]
-        found = self._misfit(residuals, about @ self.covariance(cells) @ about, cells, 1)
+        residuals, moved = about @ self.values.value[name][rows], self.contributions(cells)
+        found = self._misfit(residuals, about @ self.covariance(cells) @ about, moved, 1)
         if found is None:
             return None
-        moves = self.contributions(cells) != 0
-        differing = np.any(moves, axis=0) & ~np.all(moves, axis=0)
+        differing = np.any(moved != 0, axis=0) & np.any(moved == 0, axis=0)
         stated = all(source.said for source, one in zip(self.sources, differing, strict=True) if one)
         return replace(found, is_stated=stated)
 
@@ -398,10 +398,8 @@ class Spread:
         """The rows that have a value."""
         return np.flatnonzero(self.values.status[name] == Status.OK).tolist()
 
-    def _misfit(
-        self, residuals: Array, covariance: Array, observed: Sequence[tuple[str, int]], fitted: int
-    ) -> Misfit | None:
-        moved = self.contributions(observed)
+    def _misfit(self, residuals: Array, covariance: Array, moved: Array, fitted: int) -> Misfit | None:
+        """`moved`: what every error does to what was observed, of shape (rows, errors)."""
         size = np.sqrt(self._variance(moved))
         if not np.all(size > 0):
             return None
