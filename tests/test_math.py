@@ -37,6 +37,7 @@ from loopsheet.report.views.mathml import mathml, mathml_block
 from loopsheet.report.views.typeset import TEXT_WIDTH, block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)
+eps = Symbol("eps")
 NAMES = latex_names(VOCABULARY)
 PRINTER = MathPrinter(NAMES)
 V, XM, CP, E = (VOCABULARY[name] for name in ("v", "x_m", "Cprime", "e"))
@@ -53,6 +54,9 @@ with evaluate(False):
         (-(b * a), "-b a"),
         (2 * (b + a), "2 (b + a)"),
         (1 * x, "x"),
+        (c * eps * a, r"c \, \mathrm{eps} \, a"),  # a word is set off
+        (a * eps**2 * b, r"a \, \mathrm{eps}^{2} \, b"),
+        (eps + c, r"\mathrm{eps} + c"),
         (Mul(Integer(2), Integer(3)), r"2 \cdot 3"),
         # fractions
         (b / a, r"\frac{b}{a}"),

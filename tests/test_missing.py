@@ -12,6 +12,7 @@ from test_left_out import campaign, refused
 
 import loopsheet
 from loopsheet.report.cli import main
+from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.result.verdict import EXACT, NOT_FOUND, REACHABLE
 from loopsheet.report.study import Study
 from loopsheet.report.views import html
@@ -60,6 +61,13 @@ def test_what_needs_it_has_no_value_and_the_rest_goes_on(tmp_path: Path) -> None
     assert float(report["mean_both"]) == pytest.approx((3.00 + 3.50) / 2)  # in mm, as both are
     assert any("b[2] #INPUT!" in said for said in report.findings)
     assert any("over 2 of 3" in said for said in report.findings)
+
+
+def test_it_is_told_where_its_row_stands(tmp_path: Path) -> None:
+    folder = readings(tmp_path / "r")
+    (cells,) = (check for check in oddities(Study(folder).computed) if check.name == "cells")
+    assert (cells.passed, cells.at.path) == (False, (folder / "measurements.csv").as_posix())
+    assert cells.at.line == 3
 
 
 def test_it_is_the_paper_without_that_datum_and_not_without_that_test(tmp_path: Path) -> None:

@@ -34,9 +34,9 @@ stated = "+-0.2 um rect"
 groups = [[1, 2]]
 """
 KNOWN = {
-    "v": "+-0.01 m/s rect; s = 0.02 m/s, n = 5",
+    "v": "±0.01 m/s rect; s = 0.02 m/s, n = 5",
     "e": "u = 0.0020, –, –",
-    "x_p": "u = 0.20, 0.25, 0 um; height datum: +-0.2 um rect (the same in each of 1-2)",
+    "x_p": "u = 0.20, 0.25, 0 um; height datum: ±0.2 um rect (the same in each of 1-2)",
     "ball_mass": "u = 0.0040 g",
     "target_mass": "U = 0.2, k = 2",
     "beta": "exact",

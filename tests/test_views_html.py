@@ -12,12 +12,14 @@ import html5lib
 import pytest
 from large_campaigns import write
 
+from loopsheet.derivations.vocabulary import Vocabulary
 from loopsheet.report.cells.address import index_text
 from loopsheet.report.document import tree as tree_module
 from loopsheet.report.document.material import Material
 from loopsheet.report.document.parts import MOST
+from loopsheet.report.document.rich import Sentences
 from loopsheet.report.document.tables import Tables
-from loopsheet.report.document.tree import Node
+from loopsheet.report.document.tree import Math, Node, Unit
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
@@ -380,6 +382,17 @@ def test_sentences_of_the_checks_are_set_as_mathematics(report: Report, text: st
     material = Material(report)
     printed = html.HtmlWriter(material, {})(material.sentences.rich(text))
     assert "".join(html5lib.parseFragment(printed).itertext()) == seen
+
+
+def test_names_and_units_of_a_method_are_set_in_sentences() -> None:
+    """A column that is called like a word of English is a word; Greek letters and powers of units are set."""
+    names = {"rho": r"\rho%s", "slope": r"\mathrm{slope}%s", "rho_k": r"\rho_{k%s}"}
+    sentences = Sentences(Vocabulary(), names, (), ["kg/m^3", "kg", "N*m"])
+    printed = sentences.rich("u of rho is 0.25 kg/m^3 and a slope 3 N*m, not kg/m^3s; rho_k[2] is farthest")
+    assert printed == (
+        "u of ", Math(r"\rho"), " is 0.25 ", Unit("kg/m^3"), " and a slope 3 ", Unit("N*m"),
+        ", not kg/m^3s; ", Math(r"\rho_{k_{2}}"), " is farthest",
+    )  # fmt: skip
 
 
 def test_a_sentence_is_escaped(report: Report) -> None:

@@ -37,7 +37,8 @@ class Material:
     def __init__(self, report: Report) -> None:
         self.report = report
         self.names = latex_names(report.ledger.vocabulary, report.sheet.columns)
-        self.sentences = Sentences(report.ledger.vocabulary, self.names, self.identifiers)
+        units = {shown.unit for shown in report.shown.values()}
+        self.sentences = Sentences(report.ledger.vocabulary, self.names, self.identifiers, units)
 
     # --- names and numbers
 

@@ -43,6 +43,8 @@ __all__ = ["MathPrinter"]
 _RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
 _MIRROR = {">=": "<=", ">": "<"}
 _TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")
+_WORD = re.compile(r"\\mathrm\{[^{}]{2,}\}")
+_ENDS_WITH_WORD = re.compile(rf"{_WORD.pattern}(?:[_^]\{{[^{{}}]*\}})*$")
 
 
 # --- expressions -----------------------------------------------------------------------------------------
@@ -121,10 +123,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         for place, (above, below) in enumerate(units):
             last = place == len(units) - 1
             printed = self._unit(above, below, alone, last)
-            if text and re.search(r"\d$", text) and re.match(r"\d|\\frac", printed):
-                text += r" \cdot " + printed
-            else:
-                text += (" " if text else "") + printed
+            text += _apart(text, printed) + printed
         return negative, text
 
     def _units(self, expr: Mul) -> tuple[bool, list[tuple[list[Expr], list[Expr]]]]:
@@ -187,8 +186,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
                 or (isinstance(factor, (Sum, OrderStatistic, Integral)) and not ends)
             ):
                 printed = self._bracket(printed)
-            digits = re.search(r"\d$", text) and re.match(r"\d|\\frac", printed)
-            text += (r" \cdot " if digits else " " if text else "") + printed
+            text += _apart(text, printed) + printed
         return text
 
     @staticmethod
@@ -387,6 +385,14 @@ def _halves(factor: Basic) -> tuple[list[Expr], list[Expr]]:
             power = rest[0] if len(rest) == 1 else Mul(*rest, evaluate=False)
             return [], [Pow(factor.base, power, evaluate=False)]
     return [factor], []
+
+
+def _apart(before: str, factor: str) -> str:
+    """What stands between two factors: a dot between numbers; a word is set off from what is beside it."""
+    if re.search(r"\d$", before) and re.match(r"\d|\\frac", factor):
+        return r" \cdot "
+    words = _ENDS_WITH_WORD.search(before) or (before and _WORD.match(factor))
+    return r" \, " if words else " " * bool(before)
 
 
 def _divides(expr: Mul) -> bool:

@@ -7,7 +7,7 @@ Here the names, numbers and equation numbers in them are found; how each is prin
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 
 from ...derivations.vocabulary import Vocabulary
@@ -18,16 +18,20 @@ from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
 __all__ = ["Sentences"]
 
-_UNIT = r"(?<!\w)N/m\^\w+|(?<=[\d–]\s)[uμ](?:m|s|in)\b"
-_PART = re.compile(
+_UNIT = r"(?<!\w)N/m\^\w+|(?<=[\d–]\s)(?:[uμ](?:m|s|in)\b%s)"
+_PART = (
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"
     r"|(?P<label>\(L?\d+[a-z]?\))"
-    rf"|(?P<unit>{_UNIT})"
+    r"|(?P<unit>%s)"
     r"|(?P<symbol>(?<![\w'’.])(?P<name>[A-Za-z]\w*(?:'+(?:_\w+)?)?(?:,[a-z](?!\w))?)"
     r"(?:\[(?P<index>\w+(?:-\w+)?)\])?(?:(?:\*\*|\^)(?P<power>\w+))?(?![\w’]|\.\w))"
     r"|(?P<raised>(?<=\))\^(?P<to>\w+))"
     r"|(?P<relation><=|>=)|(?P<minus>(?<= )-(?= ))|(?P<times>(?<=[\w)\]'])\*(?!(?<=\d\*)\d)(?=[\w(]))"
 )
+"""With the pattern of the units."""
+_RAISED = re.compile(r"[\^*]")
+"""What no unit of a table has: it prints them as powers and products."""
+_GREEK = re.compile(r"\\(?!mathrm)[A-Za-z]+")
 _LONE = frozenset("ijk")
 _OTHERWISE = frozenset("aN")
 """Names that sentences use for something else: an article, and the newton."""
@@ -45,10 +49,21 @@ class Sentences:
         LaTeX of all names.
     labels : collection of str
         Of the equations that can be referred to.
+    units : iterable of str
+        Of the report: behind a number they are printed as tables print them.
     """
 
-    def __init__(self, vocabulary: Vocabulary, names: Mapping[str, str], labels: Collection[str]) -> None:
+    def __init__(
+        self,
+        vocabulary: Vocabulary,
+        names: Mapping[str, str],
+        labels: Collection[str],
+        units: Iterable[str] = (),
+    ) -> None:
         self.vocabulary, self.names, self.labels = vocabulary, names, labels
+        raised = sorted(filter(_RAISED.search, units), key=len, reverse=True)
+        self._unit = _UNIT % "".join(rf"|{re.escape(unit)}(?!\w)" for unit in raised)
+        self._part_of = re.compile(_PART % self._unit)
 
     def symbol(self, name: str, index: str = "") -> Math:
         """The symbol of a cell's name."""
@@ -66,12 +81,12 @@ class Sentences:
 
     def units(self, text: str) -> Inlines:
         """Words of a user, with the units in them as tables print them."""
-        parts = enumerate(re.split(f"({_UNIT})", text))
+        parts = enumerate(re.split(f"({self._unit})", text))
         return tuple(Unit(part) if n % 2 else part for n, part in parts if part)
 
     def _parts(self, text: str) -> Iterator[Inline]:
         place = 0
-        for found in _PART.finditer(text):
+        for found in self._part_of.finditer(text):
             printed = self._part(found)
             if printed:
                 yield text[place : found.start()]
@@ -100,8 +115,7 @@ class Sentences:
         index = index or found["index"] or ""
         if name in _LONE and not index:
             return (Math(name),)
-        # A column may be called like a word of English.
-        if name in _OTHERWISE or not (name in self.vocabulary or (name in self.names and "_" in name)):
+        if name in _OTHERWISE or not (name in self.vocabulary or self._is_no_word(name)):
             return ()
         if "-" in index:  # a pair: its dash is no minus
             return self.symbol(name), f"\u00a0{index.replace('-', '–')}"
@@ -110,6 +124,10 @@ class Sentences:
             base = f"({latex})" if "'" in latex else latex
             latex = f"{base}^{{{self._power(found['power'])}}}"
         return (Math(latex),)
+
+    def _is_no_word(self, name: str) -> bool:
+        """Whether a column is not called like a word of English: it has an index, or is a Greek letter."""
+        return name in self.names and ("_" in name or _GREEK.match(self.names[name]) is not None)
 
     def _power(self, text: str) -> str:
         """LaTeX of an exponent: digits or a name."""

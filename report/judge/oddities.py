@@ -578,14 +578,27 @@ class _Oddities:
     # --- where
 
     def place(self, cells: Sequence[Cell]) -> Location:
-        """Where the first cell was printed, or the first number of the test to look at; else report.toml."""
-        printed = self.printed(cells[0])
-        if printed is None and self.suspect and self.is_due_to_suspect(cells):
-            axis, test = self.suspect
-            table = self.inputs.on(axis)
-            row, columns = table.tests.index(test), table.measured.items()
-            printed = next((column[row] for name, column in columns if name not in self.inputs.taken), None)
-        return self.inputs.place if printed is None else self.at(printed.where, len(printed.text))
+        """Where the first cell was printed, or the first number of its row, or of the test to look at.
+
+        An empty cell is in a row; what is in none is told of report.toml.
+        """
+        if (printed := self.printed(cells[0])) is not None:
+            return self.at(printed.where, len(printed.text))
+        if (row := self.row(cells)) is None:
+            return self.inputs.place
+        axis, test = row
+        table = self.inputs.on(axis)
+        columns, place = table.measured.items(), table.tests.index(test)
+        every = (column[place] for name, column in columns if name not in self.inputs.taken)
+        first = next(filter(None, every), None)
+        return self.inputs.place if first is None else self.at(first.where, len(first.text))
+
+    def row(self, cells: Sequence[Cell]) -> tuple[str, int] | None:
+        """The axis and the test of an empty cell, or what to look at first."""
+        axis = self.sheet[cells[0].name].axis
+        if axis is not None and axis.is_given and isinstance(self.sheet[cells[0].name].rule, Given):
+            return axis.name, cells[0].label[0]
+        return self.suspect if self.is_due_to_suspect(cells) else None
 
     def at(self, where: str, length: int = 1) -> Location:
         """The place that a trace tells, else report.toml."""

@@ -50,7 +50,12 @@ def _own(report: Report, name: str) -> Iterator[str]:
     if one is None or others or any(map(_SIZES.fullmatch, one)):
         yield _sizes(report, name, printed)
     else:
-        yield "; ".join(one) or "exact"
+        yield "; ".join(map(_printed, one)) or "exact"
+
+
+def _printed(said: str) -> str:
+    """A statement as it is printed: ``±0.1 rect`` of ``+-0.1 rect``."""
+    return re.sub(r"\+/?-", "±", said)
 
 
 def _sizes(report: Report, name: str, printed: tuple[Printed, ...]) -> str:
@@ -77,7 +82,7 @@ def _shared(report: Report, name: str) -> Iterator[str]:
             where = f"the same in each of {groups}" if groups else "the same in all"
             others = [other for other in each.statements if other != name]
             where += f", and in {listing(others)}" if others else ""
-            yield f"{each.name}: {each.statements[name].parts[0].said} ({where})"
+            yield f"{each.name}: {_printed(each.statements[name].parts[0].said)} ({where})"
 
 
 def _correlated(report: Report, name: str) -> Iterator[str]:
