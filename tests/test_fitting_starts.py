@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +12,19 @@ import test_fit
 from nist_strd import Strd, digits
 from sympy import Rational
 from test_fit import NONLINEAR, Array, cells, write
+from test_live_uncertain import in_node
 
 from loopsheet.report.cli import main
 from loopsheet.report.engines import ENGINES, exact
 from loopsheet.report.engines.excel_loops import PASSES
 from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.fitting.starts import begun
+from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
+from loopsheet.report.views import live
 
 
 def sheet_of(strd: Strd, start: Array) -> tuple[Sheet, Sheet, dict[str, Any], dict[str, Any]]:
@@ -167,17 +171,41 @@ RATES = """S [mmol/L],v [umol/(L*min)]
 STATED = '[uncertainty]\nS = "exact"\nv = "u = 11"\n'
 
 
+def from_near_and_far(place: Path) -> Iterator[Report]:
+    for name, start in {"near": (210, 0.06), "far": (100, 1)}.items():
+        folder = place / name
+        folder.mkdir()
+        write(folder, ENZYME.format(V=start[0], K_M=start[1]), RATES, STATED)
+        yield Study(folder).computed
+
+
 def test_draws_begin_at_the_estimate_and_not_where_their_author_did(tmp_path: Path) -> None:
     """From far away some of them would not settle, and those are not like the others."""
     drawn = []
-    for name, start in {"near": (210, 0.06), "far": (100, 1)}.items():
-        code = ENZYME.format(V=start[0], K_M=start[1])
-        folder = tmp_path / name
-        folder.mkdir()
-        write(folder, code, RATES, STATED)
-        report = Study(folder).computed
+    for report in from_near_and_far(tmp_path):
         budget = Spread(report.inputs, report.values).budget("K_M", 0)
         drawn.append(draw(report.inputs, report.values, budget, 20_000))
     near, far = drawn
     assert near.lost == far.lost == 0
     assert (far.u, *far.symmetric) == pytest.approx((near.u, *near.symmetric), rel=1e-9)
+
+
+DRAWN = """
+const tables = Object.fromEntries(Object.entries(LIVE.tables).map(([axis, { rows }]) => [axis, rows]));
+const state = { tables, parameters: LIVE.parameters };
+const trace = new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state));
+const look = new Look(trace, state, null), { errors, pairs } = look.sure, { labels, data } = trace.sheet;
+const names = [["K_M", ...trace.ancestors("K_M")]];
+const [found] = drawn({ count: 2000, labels, data, errors, pairs, cells: [["K_M", 0]], names });
+console.log(JSON.stringify([...found]));
+"""
+
+
+def test_so_do_the_draws_of_a_page(tmp_path: Path, require: Callable[..., str]) -> None:
+    scripts = (*live.ALONE, "numbers.js", "inputs.js", "trace.js", "coverage.js", "sure.js", "cells.js")
+    near, far = (
+        in_node(require("node"), report, {"self": {"document": 1}}, scripts, DRAWN)
+        for report in from_near_and_far(tmp_path)
+    )
+    assert len(near) == len(far) == 2000
+    assert far == pytest.approx(near, rel=1e-9)

@@ -195,7 +195,7 @@ function evaluateSheet(program, labels, inputs) {
   };
   program.columns.forEach((column, n, every) => {
     if (!column.loop) put(column, compute(column));
-    else if (column.loop !== every[n - 1]?.loop) program.settle(every.filter(({ loop }) => loop === column.loop), compute, put, sheet, faulty);
+    else if (column.loop !== every[n - 1]?.loop) program.settle(every.filter(({ loop }) => loop === column.loop), compute, put, sheet, faulty, program.begun ?? {});
   });
   return sheet;
 }

@@ -83,12 +83,18 @@ function within(names) {
   return { ...PROGRAM, columns: PROGRAM.columns.filter(({ name }) => asked.has(name)) };
 }
 
+// The same with its fits begun at what they came to: draws lie about it, their author's start may be far away.
+function begunAt(program, { value, status }) {
+  const fitted = program.columns.filter(({ name, axis, start }) => start && axis === null && !status[name][0]);
+  return { ...program, begun: Object.fromEntries(fitted.map(({ name }) => [name, value[name][0]])) };
+}
+
 // The values of some cells, sorted, of as many draws as asked for: those that have one over the rows of the estimate.
 // `data` and `labels` are the sheet's; `names` has for each cell the columns that it rests on, and its own.
 function drawn({ count, labels, data, errors, pairs, cells, names }) {
-  const program = within(names), draw = drawer(errors, pairs), found = cells.map(() => []), estimate = evaluateSheet(program, labels, data).kept;
+  const asked = within(names), draw = drawer(errors, pairs), found = cells.map(() => []), here = evaluateSheet(asked, labels, data), program = begunAt(asked, here);
   for (let n = 0; n < count; n++) {
-    const { value, status, kept } = evaluateSheet(program, labels, displaced(data, errors, draw())), others = otherRows(kept, estimate);
+    const { value, status, kept } = evaluateSheet(program, labels, displaced(data, errors, draw())), others = otherRows(kept, here.kept);
     cells.forEach(([name, row], which) => {
       if (!status[name][row] && !others.some((other) => names[which].includes(other))) found[which].push(value[name][row]);
     });

@@ -20,14 +20,15 @@ function independent(errors, pairs) {
 // first order tells nothing, either. `rough` has for each whether it rests on a function with corners (1) or on what is
 // taken by order (2).
 function secondOrder({ labels, data, errors, pairs, cells, names, rough }) {
-  const program = within(names), reach = errors.map(({ moves }) => ({ moves: moves.filter(([name]) => program.columns.some((one) => one.name === name)) }));
+  const alone = within(names), here = evaluateSheet(alone, labels, data), program = begunAt(alone, here);
+  const reach = errors.map(({ moves }) => ({ moves: moves.filter(([name]) => program.columns.some((one) => one.name === name)) }));
   const ways = independent(errors, pairs), along = (way, far) => evaluateSheet(program, labels, displaced(data, errors, way.by.map((one) => far * one)));
   // The slopes of the cells along every way; nothing of a cell without a value.
   const slopes = (sheet) => {
     const effects = sensitivities(program.columns, sheet, reach);
     return cells.map(([name, row]) => ways.map(({ by }) => (sheet.status[name][row] ? NaN : by.reduce((all, one, n) => all + (one && one * (effects[name]?.[row * by.length + n] ?? 0)), 0))));
   };
-  const here = evaluateSheet(program, labels, data), first = slopes(here), torn = new Set(), value = (sheet, [name, row]) => (sheet.status[name][row] ? NaN : sheet.value[name][row]);
+  const first = slopes(here), torn = new Set(), value = (sheet, [name, row]) => (sheet.status[name][row] ? NaN : sheet.value[name][row]);
   const beside = ways.map((way) => [1, -1].map((side) => {
     const near = along(way, side * STEP), far = along(way, side * FAR);
     otherRows(near.kept, here.kept).forEach((name) => torn.add(name));
