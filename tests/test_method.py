@@ -179,6 +179,10 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ("q = unknown()", "q is announced as unknown, and neither a root nor a fit finds it"),
         ("q = 2 * a", "Colebrook computes nothing"),
         ('q = unknown(); q = root(q, 1, "x", low=3, high=1)', "between 3 and 1: low is not below high"),
+        (
+            'q = unknown(); q = root(q, 1, "x", "mm", low=1, high=3, start=4)',
+            "the root is begun at 4, which is not between 1 and 3 mm",
+        ),
     ],
 )
 def test_a_wrong_line_is_told(

@@ -283,7 +283,8 @@ class _Oddities:
         if missing:
             causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
             has = "has" if len(missing) == 1 else "have"
-            said = f"{_addresses(missing)} of the result {has} no value, for want of {_some(list(causes))}"
+            said = f"{_addresses(missing)} of the result {has} no value"
+            said += f", for want of {_some(list(causes))}" * any(cell.culprit for cell in missing)
         return Check(DATA, RESULT, not missing, said, self.inputs.place)
 
     def leading_to(self, name: str) -> list[str]:

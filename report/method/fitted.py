@@ -34,7 +34,7 @@ POINTS = 65
 BEYOND = Rational(1, 20)
 """How far a fitted curve goes on beyond the rows: in shares of their range, or of their distance to zero."""
 NONE = (
-    "the steps from the stated start do not settle: begin nearer; or no parameters make the sum of squares "
+    "its steps lead nowhere from the stated start: begin nearer; or no parameters make the sum of squares "
     "least, or these rows do not tell them apart"
 )
 

@@ -311,6 +311,8 @@ def root(
     ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
     first, last = (f"{float(end):.15g}" if end.is_number else str(end) for end in (low, high))
     between = f"{first} and {last}" + behind(unit)
+    if (ends["start"] <= low) == true or (ends["start"] >= high) == true:
+        raise SheetError(f"the root is begun at {float(ends['start']):.15g}, which is not between {between}")
     none = f"no value between {between}, these ends left out, satisfies the equation"
     # Ends that hang on the row may change places.
     upright = low < high
