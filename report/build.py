@@ -50,13 +50,18 @@ def parse_formats(words: str) -> tuple[str, ...]:
     return tuple(f for f in FORMATS if f in (*wanted, "json"))
 
 
+def formats_there(out: Path) -> tuple[str, ...]:
+    """What an output folder says that it has been built in."""
+    before = manifest_of(out)
+    return tuple(each for each in FORMATS if before and FORMATS[each][1] in before.outputs)
+
+
 def formats_again(out: Path) -> tuple[str, ...] | None:
     """What to build where nothing is asked for: None, the default, and what was asked for before besides.
 
     A report.pdf that was issued is not to go because it is built again without a word.
     """
-    before = manifest_of(out)
-    there = [each for each in FORMATS if before and FORMATS[each][1] in before.outputs]
+    there = formats_there(out)
     if set(there).isdisjoint(ON_REQUEST):
         return None
     # A workbook that is not there beside a page was too large.

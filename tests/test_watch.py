@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 from small_report import end_gauge
 
+from loopsheet.report.cli import main
 from loopsheet.report.machine.local_server import Server
 from loopsheet.report.verbs.watch import _look
 
@@ -128,6 +129,7 @@ def test_what_is_saved_is_built_again(tmp_path: Path) -> None:
     folder = tmp_path / "gauge"
     folder.mkdir()
     end_gauge(folder)
+    assert main(["build", str(folder), "--to", "html,xlsx"]) == 0
     watch = Watch(folder)
     try:
         address = re.findall(r"http://\S+", watch.until(r"\(Ctrl-C ends\)"))[0]
@@ -162,6 +164,8 @@ def test_what_is_saved_is_built_again(tmp_path: Path) -> None:
         assert get(f"{address}report.html")[1] == again
         watch.process.send_signal(signal.SIGINT)
         assert watch.process.wait(20) == 0
+        *_, last_line = watch.said.read_text().splitlines()
+        assert last_line == f"'loopsheet build {folder} --to html,xlsx,json' makes again what went: xlsx"
         assert "Traceback" not in watch.said.read_text()
         with pytest.raises(urllib.error.URLError):
             get(address)

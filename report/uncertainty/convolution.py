@@ -52,6 +52,8 @@ class _Part:
     size: float
     dof: float = math.inf
     law: Law | None = None
+    of: int = 1
+    """Of so many errors it is the sum."""
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -97,6 +99,11 @@ class Convolved(Law):
         """Beyond which there is nothing."""
         low, high = (sum(ends) for ends in zip(*(part.ends for part in self.parts), strict=True))
         return low * (1 - ROUNDED), high * (1 - ROUNDED)
+
+    @property
+    def effective(self) -> float:
+        """The degrees of freedom of several errors without ends that are taken as one; infinite for none."""
+        return min((part.dof for part in self.parts if part.of > 1), default=math.inf)
 
     @cached_property
     def _bins(self) -> tuple[Array, Array]:
@@ -200,7 +207,8 @@ def convolved(
     rest[ended] = 0.0
     size, dof = of_sum(sources, rest, [each for each in pairs if not {*each[:2]} & {*ended}])
     if size:
-        parts.append(_Part(Shape.NORMAL if math.isinf(dof) else Shape.STUDENT, size, dof))
+        shape = Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
+        parts.append(_Part(shape, size, dof, of=int(np.count_nonzero(rest))))
     return Convolved(tuple(_fewer(parts)))
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..distribution import DIVISORS, DOMINANT, LEVEL, PARTS, Shape
 from ..laws import Law
 from ..result.uncertain import ErrorSource
-from .convolution import convolved
+from .convolution import Convolved, convolved
 
 __all__ = ["assigned", "coverage"]
 
@@ -82,8 +82,11 @@ def coverage(shape: Shape, law: Law | None, dof: float, level: float = LEVEL) ->
     """
     if math.isnan(dof):
         return math.nan, "nothing: correlated sources have finite degrees of freedom"
-    if shape is Shape.CONVOLVED and law is not None:
-        return law.half(level), "the convolved distributions of its sources"
+    if isinstance(law, Convolved):
+        one, because = law.effective, "the convolved distributions of its sources"
+        if math.isfinite(one):
+            because += f", those without ends as one t with {one:.0f} degrees of freedom"
+        return law.half(level), because
     if law is not None or shape in PARTS:
         factor = DIVISORS[shape] * PARTS[shape](level) if law is None else law.half(level)
         return factor, f"the {shape} source that dominates"

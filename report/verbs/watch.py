@@ -37,15 +37,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Build and wait, until Ctrl-C."""
-    from ..build import parse_formats
+    from ..build import formats_there, parse_formats
     from ..files.values import NAME
-    from ..inputs.folders import report_folder, told
+    from ..inputs.folders import report_folder, told, written
     from ..machine.local_server import Server
     from ..messages.diagnostics import visible
 
     formats = parse_formats(options.to)
     folder = report_folder(options.folder)
     out = out_of(options, folder)
+    issued = formats_there(out)
     try:
         with Server(out) as server:
             said = f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)"
@@ -54,6 +55,11 @@ def run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt as stopped:
         if getattr(stopped, "number", signal.SIGINT) != signal.SIGINT:
             raise
+        # What told of the report before went when something changed.
+        if gone := {*issued} - {*formats_there(out)}:
+            there = f" --out {written(out)}" if options.out else ""
+            command = f"loopsheet build {written(folder)} --to {','.join(issued)}{there}"
+            print(visible(f"'{command}' makes again what went: {', '.join(sorted(gone))}"))
     return OK
 
 

@@ -28,6 +28,8 @@ from .blocks import Block, TextTable, printers
 
 __all__ = ["FORMATS", "Besides", "notes", "number", "percent", "sentence"]
 
+WIDER = 1.02
+"""So many times u, a standard deviation of draws is another number."""
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")
 _NONE = "—"
 SHIFTED = 0.05
@@ -240,12 +242,20 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
     yield f"Monte Carlo, {drawn.number} draws: median {told(drawn.median)}{unit}" + (
         f", u = {report.sure(budget.name, drawn.u).text}{unit}" if math.isfinite(drawn.u) else ""
     )
-    if drawn.lost:
-        share = percent(drawn.lost / drawn.number)
+    if drawn.u > WIDER * budget.u and any(math.isfinite(each.source.dof) for each in budget.contributions):
         yield (
-            f"{drawn.lost} of them ({share}) have no value, or one of sums over other rows than the "
-            "estimate's: all this is given that every row which the estimate uses has a value, and no other"
+            "errors that are known with few degrees of freedom are drawn from t distributions, whose "
+            "standard deviation is larger than u (JCGM 101, 6.4.9)"
         )
+    if drawn.lost:
+        lost = f"{drawn.lost} of them ({percent(drawn.lost / drawn.number)}) have no value"
+        if report.sheet.axes:
+            yield (
+                f"{lost}, or one of sums over other rows than the estimate's: all this is given that every "
+                "row which the estimate uses has a value, and no other"
+            )
+        else:
+            yield f"{lost}: all this is given that there is one"
     if math.isnan(drawn.u):
         what = "standard deviation" if math.isfinite(drawn.mean) else "mean and no standard deviation"
         yield f"there is no {what}: the tails fall as the power {drawn.tail:.2g} of the distance"

@@ -4,8 +4,16 @@
 // What people write for a number, in our notation: a decimal comma becomes a point, a real minus a hyphen.
 // Nobody knows whether 1,234 is a little more than one or a thousand, unless the other numbers of a block tell.
 const EITHER = /^[+-]?[1-9][0-9]{0,2},[0-9]{3}$/;
+// In parentheses behind a number stands its standard uncertainty, in units of its last digit.
+const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
 
-function normalised(text, commas = false) {
+// What is no number even so stays as it was typed: without its comma “200.0, exact” would be a number but for a word.
+function normalised(text, commas) {
+  const read = inOurNotation(text, commas);
+  return NUMBER.test(CONCISE.exec(read)?.[1] ?? read) ? read : text.trim();
+}
+
+function inOurNotation(text, commas = false) {
   // A blank or a mark groups digits by three, or it is no part of a number.
   const plain = text.trim().replace(/([0-9])[\s\u00a0\u2007\u202f'_](?=[0-9]{3}(?![0-9]))/g, "$1").replace(/[\u2212\u2013]/g, "-");
   const comma = plain.lastIndexOf(","), point = plain.lastIndexOf(".");
@@ -17,9 +25,6 @@ function normalised(text, commas = false) {
 const LARGEST = tenTo(300);
 const isLess = (a, b) => a.n * b.d < b.n * a.d;
 const isSane = ({ n, d }) => magnitude(n) <= LARGEST * d && magnitude(n) * LARGEST >= d;
-
-// In parentheses behind a number stands its standard uncertainty, in units of its last digit.
-const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
 
 // A printed text as the value of an input in SI: { value }, with one unit of its last digit and what is stated of its
 // errors, or { why } there is none. Where a column states them and says nothing of this row, they are unknown.

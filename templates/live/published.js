@@ -17,7 +17,13 @@ function compared(look, [cell, index, text, scale, truncated, known, other]) {
     return { again, verdict: "no value", finding };
   }
   const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, (scale || [1, 1]).map(BigInt), truncated);
+  if (!same && known === null && !asIssued(look, cell, index)) return { again, distance, verdict: "differs", finding: "", open: true };
   return { again, distance, verdict: same ? "same" : "differs", finding: findingOf(same, again, known, other) };
+}
+
+function asIssued(look, cell, index) {
+  const now = look.trace.row(cell, index), before = look.issued.trace.row(cell, index);
+  return now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
 }
 
 const distanceText = (distance) => signedText(decimals(distance, 1));
@@ -27,15 +33,13 @@ function writePublished(look) {
   for (const { id, rows, called, found } of groups) {
     const body = byId(id)?.querySelector("tbody");
     if (!body) continue;
-    found.forEach(({ again, distance, verdict, finding }, place) => {
+    found.forEach(({ again, distance, verdict, finding, open }, place) => {
       const row = body.rows[place], cells = row.cells;
       setText(cells[3], again);
       setText(cells[5], distance === undefined ? "" : distanceText(distance));
-      setText(cells[6], verdict + (finding && `, ${finding}`));
+      setText(cells[6], verdict + (open ? ", not refereed" : finding && `, ${finding}`));
       row.classList.toggle("unexpected", finding !== "");
-      const [cell, index] = rows[place], now = look.trace.row(cell, index), before = look.issued.trace.row(cell, index);
-      const same = now >= 0 && before >= 0 && isSameCell(look, cell, now, look.issued, before);
-      cells[3].classList.toggle("changed", !same);
+      cells[3].classList.toggle("changed", !asIssued(look, ...rows[place]));
     });
     writeGroup(groups.findIndex((group) => group.id === id), rows, called, found);
   }
@@ -52,7 +56,7 @@ function writeTally(found) {
   const element = all("#result > p").find((p) => p.querySelector('a[href="#published"]'));
   if (!element) return;
   const count = (verdict) => found.filter((one) => one.verdict === verdict).length;
-  const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => one.finding).length;
+  const differing = count("differs"), unchecked = count("no value"), surprises = found.filter((one) => one.finding).length, open = found.filter((one) => one.open).length;
   const parts = [`Of ${plural(found.length, "published value")}, ${comes(count("same"))} out as printed`];
   if (differing) parts.push(` and ${differing} ${differing === 1 ? "differs" : "differ"}`);
   if (unchecked) parts.push(`; ${unchecked} could not be compared`);
@@ -61,6 +65,7 @@ function writeTally(found) {
     const was = surprises === 1 ? "was" : "were";
     sentences.push(" ", make("strong", {}, `${surprises} of these findings ${was} not expected.`));
   }
+  if (open) sentences.push(` A build of what stands here tells whether printed digits explain ${open === 1 ? "one" : open} of these differences.`);
   const text = sentences.map((one) => one.textContent ?? one).join("");
   if (element.textContent !== text) element.replaceChildren(...sentences);
 }

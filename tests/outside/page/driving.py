@@ -69,12 +69,17 @@ def shown(cells: list[Shown]) -> list[str]:
 
 _SHOWN = re.compile("([-\u2212]?)(\\d[\\d\u202f]*)(\\.\\d+)?(?:[ \u00a0]×[ \u00a0]10([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+))?")
 
+_REFEREED = re.compile(
+    r"(?<=differs), (?:unexpectedly|not refereed)"
+    r"| \d+ of these findings (?:was|were) not expected\.| A build of what stands here tells .* differences\."
+)
+
 
 def alike(ours: list[str], theirs: list[str]) -> bool:
     """Whether texts say the same, in numbers as far as both have digits.
 
     An edited page keeps the digits that uncertainties left it as issued; a build of what was edited has those
-    that follow from its own.
+    that follow from its own. And it asks a referee whether a difference is a finding, which no page can.
     """
 
     def read(found: re.Match[str]) -> tuple[Fraction, Fraction]:
@@ -87,6 +92,7 @@ def alike(ours: list[str], theirs: list[str]) -> bool:
         pairs = zip(map(read, _SHOWN.finditer(one)), map(read, _SHOWN.finditer(other)), strict=True)
         return all(abs(a - b) <= (last + least) / 2 for (a, last), (b, least) in pairs)
 
+    ours, theirs = ([_REFEREED.sub("", text) for text in texts] for texts in (ours, theirs))
     return [_SHOWN.sub("#", text) for text in ours] == [_SHOWN.sub("#", text) for text in theirs] and all(
         map(same, ours, theirs)
     )

@@ -250,6 +250,33 @@ def test_a_comma_that_may_group_digits_is_not_guessed(open_page: Open) -> None:
     assert live.input("e", 2).input_value() == "0.512"
 
 
+def test_what_is_no_number_stays_as_it_was_typed(live: Live) -> None:
+    """Without its comma it would be another number, but for a word that is soon taken away."""
+    for typed in ("200.0, exact", "2.940 m/s, u = 0.01", "1,5 mm"):
+        live.type("v", 2, typed, key="Enter")
+        assert live.input("v", 2).input_value() == typed
+        assert live.cell("v", "2").status == "#INPUT!"
+    live.type("v", 2, "2.940,5(2)", key="Enter")
+    assert live.input("v", 2).input_value() == "2940.5(2)"
+
+
+def test_what_printed_digits_may_explain_is_left_to_a_build(open_page: Open, tmp_path: Path) -> None:
+    """A page has no referee: of what was edited it says that it differs, of all else what was found."""
+    build.build(Study(PAPER.parent / "worked_example"), tmp_path, ("html",))
+    live = open_page(tmp_path / "report.html")
+    before = live.around()
+    live.type("x_p", 2, "0.03400", key="Enter")
+    live.state()  # once it has been recalculated
+    rows = [text for text in live.around() if re.search(r"differs|same", text)]
+    assert any(text.endswith("differs, not refereed") for text in rows)
+    (told,) = (text for text in live.around() if text.startswith("Of ") and "published values" in text)
+    number = sum("not refereed" in text for text in rows)
+    assert f"A build of what stands here tells whether printed digits explain {number} of these" in told
+    live.press("Control+z")
+    live.state()
+    assert live.around() == before
+
+
 def test_parameters_are_edited_too(live: Live, tmp_path: Path) -> None:
     live.type("beta", "", "1,25")
     folder = driving.write(tmp_path / "folder", driving.paper())
