@@ -11,6 +11,7 @@ import loopsheet
 import loopsheet.report.method.words
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.study import Study
 
 
 def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
@@ -28,6 +29,29 @@ def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
     assert made["G"].value == pytest.approx(6.6743e-11, rel=1e-4)
     assert made["twice"].u == pytest.approx(2 * made["G"].u)
     assert made["G"].u > 0 == made["R"].u
+
+
+@pytest.mark.parametrize("taken", ["8.314", "8.31"])
+def test_a_constant_of_fewer_digits_explains_what_was_published(tmp_path: Path, taken: str) -> None:
+    """And accuses no number of being misprinted."""
+    code = (
+        "from loopsheet import Method, constant, given, let\n\n\nclass Energy(Method):\n"
+        "    b = given('K', 'slope')\n    c = given('K', 'another')\n    R = constant('molar gas constant')\n"
+        "    E_b = let(b * R, 'energy', 'kJ/mol')\n    E_c = let(c * R, 'another', 'kJ/mol')\n"
+    )
+    path = folder(tmp_path, code, 'b = "11823.29 K"\nc = "7512.40 K"\n[published]\nfile = "published.csv"\n')
+    rows = (f"text,E_{n},,{float(taken) * size:.3f},J/mol" for n, size in (("b", 11823.29), ("c", 7512.40)))
+    (path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *rows, ""]))
+    referee = Study(path).refereed.referee
+    first, *others = referee.explanations
+    assert [(each.kind, each.cell, each.would_print) for each in first.changes] == [("parameter", "R", taken)]
+    assert others == []
+    (path / "report.toml").write_text(
+        (path / "report.toml")
+        .read_text()
+        .replace("[published]", f'R = "{taken} J/(mol*K), exact"\n[published]')
+    )
+    assert all(each.verdict == "same" for each in Study(path).refereed.comparisons)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from ..result.verdict_words import mismatch as in_words
 from .comparison import prints_same
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, orders
-from .habits import computed_from_printed, every_row, other_conventions, other_rows
+from .habits import computed_from_printed, every_row, other_conventions, other_rows, rounded_constants
 from .misprints import misprint, misprints, two_misprints
 from .problem import Problem
 from .scales import misplaced_inputs, misplaced_tables, truncated_inputs, truncated_tables
@@ -28,7 +28,7 @@ __all__ = ["Doubts", "Explained", "explanations"]
 Kind = Callable[[Search], Iterator[Explained]]
 
 KINDS: tuple[tuple[Kind, ...], ...] = (
-    (computed_from_printed, every_row, other_conventions),
+    (computed_from_printed, every_row, other_conventions, rounded_constants),
     (
         truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, columns, other_rows,
         misplaced_inputs, misplaced_tables, misprints,
@@ -117,11 +117,19 @@ class Doubts:
         order = 2 if plain or long else 1 if change.kind == "misprint" else 0
         if each.explanation.as_printed:
             order = -2
-        elif self.is_slip_of_it(each):
+        elif self.is_slip_of_it(each) or _is_rounding(change):
             order = -1
         elif (change.kind, change.source) == ("misprint", INPUT) and where in self.exact:
             order = 3
         return order, float(in_words(each.explanation.mismatch)), _digits_moved(change)
+
+
+def _is_rounding(change: Change) -> bool:
+    """Whether a parameter was taken with fewer digits than it has."""
+    if change.kind != "parameter" or change.count:
+        return False
+    digits = len(change.would_print.partition("e")[0].replace(".", "").lstrip("-0"))
+    return change.would_print == f"{float(change.printed):.{digits}g}"
 
 
 def _digits_moved(change: Change) -> float:

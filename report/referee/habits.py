@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
@@ -20,7 +21,7 @@ from .problem import Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-__all__ = ["computed_from_printed", "every_row", "other_conventions", "other_rows"]
+__all__ = ["computed_from_printed", "every_row", "other_conventions", "other_rows", "rounded_constants"]
 
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
@@ -260,6 +261,27 @@ def _other_number(search: Search, column: Column) -> Iterator[Explained]:
     search.drop(certain=False)
 
 
+def rounded_constants(search: Search) -> Iterator[Explained]:
+    """A constant of nature, or of a standard, with fewer digits than it has: R = 8.314 of a textbook."""
+    own = search.problem
+    campaign, constants = own.campaign, own.campaign.inputs.workbook.constants
+    for column in campaign.sheet.columns:
+        name = column.name
+        if name not in constants or campaign.suspects(name) or not column.exact:
+            continue
+        touched = _resting_on(own, column)
+        if not touched or not search.worth(touched):
+            continue
+        printed = campaign.inputs.parameters[name]
+        fewer = range(2, min(MOST_DIGITS, printed.digits - 1) + 1)
+        texts = list(dict.fromkeys(f"{float(printed.number):.{digits}g}" for digits in fewer))
+        numbers = [float(Fraction(text) * printed.scale + printed.zero) for text in texts]
+        asked = [(Problem.of(_with(campaign, column, number), own.published), None) for number in numbers]
+        for place, now in search.likeliest(asked)[:1]:
+            changed = asked[place][0]
+            yield search.explained([_change(own, column, texts[place])], changed, changed.box, now)
+
+
 COUNTS = (
     *range(2, 13), 15, 16, 20, 24, 25, 30, 32, 40, 50, 60, 64, 75, 80, 99, 100, 101, 120, 128, 150, 200, 250,
     256, 300, 400, 500, 512, 1000,
@@ -270,7 +292,7 @@ COUNTS = (
 def _other_count(search: Search, column: Column) -> Iterator[Explained]:
     """Another number of rows that each row of an axis is repeated to."""
     own = search.problem
-    touched = _resting_on_count(own, column)
+    touched = _resting_on(own, column)
     if not touched or not search.worth(touched):
         return
     counts = [count for count in COUNTS if count != own.campaign.data[column.name]]
@@ -289,7 +311,7 @@ def _with(campaign: Campaign, column: Column, value: float) -> Campaign:
     return replace(campaign, data=data, values=evaluate(program.sheet, campaign.labels, data, program))
 
 
-def _resting_on_count(problem: Problem, column: Column) -> frozenset[int]:
+def _resting_on(problem: Problem, column: Column) -> frozenset[int]:
     sheet = problem.sheet
     names = {c.name for c in sheet.columns if column.name in {a.name for a in sheet.ancestors(c)}}
     return frozenset(n for n, value in enumerate(problem.published) if value.cell in names)

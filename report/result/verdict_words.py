@@ -95,7 +95,7 @@ MOST_TOLD = 5
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
     "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
-    "exchanged or in another order, nothing computed from rounded numbers, no other convention"
+    "exchanged or in another order, nothing computed from rounded numbers or constants, no other convention"
 )
 
 _MOST_PLACES = 16
