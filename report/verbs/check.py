@@ -107,7 +107,7 @@ def _ask(report: Report) -> None:
 
 
 def _print(report: Report, found: Sequence[Check]) -> None:
-    from ..result.verdict import WITHIN
+    from ..result.verdict import REACHABLE, WITHIN
     from ..result.verdict_words import lines
 
     passed = sum(p.status.passes for p in report.proofs)
@@ -119,8 +119,10 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     every = report.every_comparison
     same = sum(c.verdict == "same" for c in every)
     known = sum(bool(c.published.expect) and c.as_expected for c in every)
-    other = sum(c.verdict == "differs" and not c.published.expect and c.as_expected for c in every)
-    within = sum(c.verdict == "differs" and c.word == WITHIN and not c.as_expected for c in every)
+    apart = [c for c in every if c.verdict == "differs" and not c.published.expect]
+    other = sum(c.word == REACHABLE and c.as_expected for c in apart)
+    by_printed = sum(c.word not in (REACHABLE, WITHIN) and c.as_expected for c in apart)
+    within = sum(c.word == WITHIN for c in apart)
     missing = sum(c.verdict == "not-checkable" and not c.published.expect for c in every)
     if every:
 
@@ -131,9 +133,10 @@ def _print(report: Report, found: Sequence[Check]) -> None:
         as_nought = f" ({nought} as 0, which says little of a value)" if nought else ""
         said = [f"{they(same, 'print')} the same{as_nought}", f"{they(known, 'differ')} as is known"]
         said += [f"{they(other, 'come')} out of other inputs that print as given"] * bool(other)
+        said += [f"{they(by_printed, 'come')} out of rounded numbers as they are printed"] * bool(by_printed)
         said += [f"{they(within, 'differ')} within the stated uncertainties alone"] * bool(within)
         said += [f"{missing} cannot be checked"] * bool(missing)
-        rest = len(every) - same - known - other - within - missing
+        rest = len(every) - same - known - other - by_printed - within - missing
         said += [f"{they(rest, 'differ')} otherwise"] * bool(rest)
         print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:
