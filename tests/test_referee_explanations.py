@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
+from statistics import mean, stdev
 
 import pytest
 from small_report import found, pure
@@ -16,6 +18,7 @@ from loopsheet.report.referee.scales import shifted
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.verdict import REACHABLE, Change, Explanation, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
+from loopsheet.report.study import Study
 
 k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
 ROWS = Axis("rows", k, n)
@@ -207,3 +210,30 @@ def test_an_explanation_is_known_by_its_name_and_by_what_is_said_of_it(said: str
     every = (Explanation((change,), 0.5, 3, 4),)
     assert words.holds(said, every) is holds
     assert words.names(every).endswith(": misprint tenfold[2] (Table)")
+
+
+DROPS = """from sympy import sqrt
+from loopsheet import Method, count, let, mean, measured
+
+
+class Drops(Method, rows="drops", headline="m s"):
+    eta = measured("Pa*s", "viscosity", positive=True)
+    m = let(mean(eta), "its mean", "Pa*s")
+    s = let(sqrt(sum((eta - m) ** 2) / (count() - 1)), "its scatter", "Pa*s")
+"""
+VISCOSITIES = ("1.0312", "1.0291", "1.0353", "1.0304", "1.0281", "1.0507")
+
+
+def test_a_test_that_all_averages_leave_out_is_one_change(tmp_path: Path) -> None:
+    """Not a misprint of each of them; the search over one average alone finds nothing."""
+    (tmp_path / "workbook.py").write_text(DROPS)
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[published]\nfile = "published.csv"\n'
+    (tmp_path / "report.toml").write_text(toml)
+    (tmp_path / "m.csv").write_text("\n".join(["eta [Pa*s]", *VISCOSITIES, ""]))
+    without = [float(each) for each in VISCOSITIES[:-1]]
+    rows = (f"text,m,,{mean(without):.5f},Pa*s", f"text,s,,{stdev(without):.5f},Pa*s")
+    (tmp_path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *rows, ""]))
+    of = Study(tmp_path).refereed.referee
+    would = "without drop 6"
+    assert changes(of)[0] == [("rows", "m", (), would), ("rows", "s", (), would)]
+    assert of.explanations[0].count == 1

@@ -17,7 +17,14 @@ from ..result.verdict_words import mismatch as in_words
 from .comparison import prints_same
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, orders
-from .habits import computed_from_printed, every_row, other_conventions, other_rows, rounded_constants
+from .habits import (
+    computed_from_printed,
+    every_row,
+    other_conventions,
+    other_rows,
+    rounded_constants,
+    without_a_test,
+)
 from .misprints import misprint, misprints, two_misprints
 from .problem import Problem
 from .scales import misplaced_inputs, misplaced_tables, truncated_inputs, truncated_tables
@@ -30,8 +37,8 @@ Kind = Callable[[Search], Iterator[Explained]]
 KINDS: tuple[tuple[Kind, ...], ...] = (
     (computed_from_printed, every_row, other_conventions, rounded_constants),
     (
-        truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, columns, other_rows,
-        misplaced_inputs, misplaced_tables, misprints,
+        truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, columns, without_a_test,
+        other_rows, misplaced_inputs, misplaced_tables, misprints,
     ),
     (orders, two_misprints),
 )  # fmt: skip

@@ -21,7 +21,14 @@ from .problem import Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-__all__ = ["computed_from_printed", "every_row", "other_conventions", "other_rows", "rounded_constants"]
+__all__ = [
+    "computed_from_printed",
+    "every_row",
+    "other_conventions",
+    "other_rows",
+    "rounded_constants",
+    "without_a_test",
+]
 
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
@@ -171,6 +178,41 @@ def _with_every(program: Program, silent: Set[str]) -> Program:
             )
         )
     )
+
+
+def without_a_test(search: Search) -> Iterator[Explained]:
+    """Several published averages, scatters and fits that all leave out the same test."""
+    problem, campaign = search.problem, search.problem.campaign
+    for table in campaign.inputs.tables:
+        columns = [name for name in table.measured if name in problem.sheet]
+        members = [
+            n
+            for n, value in enumerate(problem.published)
+            if problem.sheet[value.cell].axis is None and _rests_on(problem, value.cell, columns)
+        ]
+        if len(members) < 2 or not search.worth(members):
+            continue
+        cells = [problem.published[n].cell for n in members]
+        program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
+        own = [name for name in columns if name in program.sheet]
+        ways = [
+            Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in range(len(table.tests))
+        ]
+        asked = [(problem.computed(way, members), None) for way in ways]
+        for place, now in sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)[:1]:
+            would = f"without {table.row} {table.called(table.tests[place])}"
+            published = [problem.published[n] for n in members]
+            changes = [
+                Change("rows", p.cell, (), p.source, p.printed.text, would, count=int(p is published[0]))
+                for p in published
+            ]
+            changed = asked[place][0]
+            yield search.explained(changes, changed, changed.box, now)
+
+
+def _rests_on(problem: Problem, cell: str, columns: Collection[str]) -> bool:
+    sheet = problem.sheet
+    return any(each.name in columns for each in sheet.ancestors(sheet[cell]))
 
 
 def other_rows(search: Search) -> Iterator[Explained]:

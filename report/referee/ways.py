@@ -30,6 +30,8 @@ class Way:
     """Of shape (rows,), by column name; columns that are taken as they are printed, in SI."""
     rows: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
     """By column name; columns of which some rows are taken as the sheet computes them."""
+    gone: Mapping[str, int] = field(default_factory=dict)
+    """By name of a given column; the row in which its datum is missing."""
 
     @cached_property
     def guessing(self) -> Way:
@@ -42,6 +44,9 @@ class Way:
         own = {c.name for c in self.program.sheet.columns}
         given = {name: column for name, column in (*campaign.data.items(), *data.items()) if name in own}
         taken = {name: plain.value[name][..., rows] for name, rows in self.rows.items()}
+        for name, row in self.gone.items():
+            given[name] = np.array(given[name], dtype=np.float64)
+            given[name][..., row] = np.nan
         return evaluate(self.program.sheet, self.labels, {**given, **taken, **self.printed}, self.program)
 
 
