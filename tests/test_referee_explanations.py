@@ -31,8 +31,9 @@ def formula(name: str, expression: object) -> Formula:
 X = Column("x", ROWS, Given(), positive=False)
 SQUARE = Column("square", ROWS, formula("square", X[k] ** 2), positive=False)
 TENFOLD = Column("tenfold", ROWS, formula("tenfold", 10 * SQUARE[k]), positive=False)
+HUNDREDFOLD = Column("hundredfold", ROWS, formula("hundredfold", 10 * TENFOLD[k]), positive=False)
 MEAN = Column("mean", None, formula("mean", Sum(SQUARE[k], (k, 1, n)) / n), positive=False)
-SHEET = Sheet((X, SQUARE, TENFOLD, MEAN))
+SHEET = Sheet((X, SQUARE, TENFOLD, HUNDREDFOLD, MEAN))
 
 
 def said(x: str, **published: str) -> Referee:
@@ -210,6 +211,17 @@ def test_an_explanation_is_known_by_its_name_and_by_what_is_said_of_it(said: str
     every = (Explanation((change,), 0.5, 3, 4),)
     assert words.holds(said, every) is holds
     assert words.names(every).endswith(": misprint tenfold[2] (Table)")
+
+
+def test_what_a_rounded_column_leads_to_need_not_be_computed_from_all_that_is_printed() -> None:
+    """The squares were rounded; tenfold squares were not before they were multiplied once more."""
+    of = said("1.1100 1.3700", square="1.23 1.88", tenfold="12 19", hundredfold="123.0 188.0")
+    assert of.as_printed
+    (only,) = of.explanations
+    assert (only.first.kind, only.first.source, only.first.would_print) == ("printed", "Table", "square")
+    # One digit of them that is wrong is not excused by that.
+    of = said("1.1100 1.3700", square="1.23 1.88", tenfold="12 19", hundredfold="123.0 183.0")
+    assert not of.as_printed
 
 
 DROPS = """from sympy import sqrt

@@ -89,6 +89,10 @@ def _habits(search: Search) -> Iterator[_Habit]:
             yield _habit(problem, source, [(cell, members)], given)
     for source, cells in tables.items():
         own = {cell for cell, _ in cells}
+        for name in sorted(own & printed.keys()):  # all that rest on it, whatever is printed in between
+            resting = [(cell, m) for cell, m in cells if _rests_on(problem, cell, [name])]
+            if len(resting) > 1:
+                yield _habit(problem, source, resting, {name: printed[name]})
         elsewhere = {name: values for name, values in printed.items() if name not in own}
         nearest = {name for cell in own for name in _nearest(problem, sheet[cell], elsewhere)}
         resting = [(cell, m) for cell, m in cells if _nearest(problem, sheet[cell], elsewhere)]
