@@ -22,6 +22,9 @@ HEADER = "source,cell,index,value,unit,expect,recomputed,reason"
         ("u(l, d)", About("u", "l", "d")),
         ("U99(l)", About("U", "l", "", 0.99)),
         ("k95.45(l)", About("k", "l", "", 0.9545)),
+        ("U(l, k=2)", About("U", "l", factor=2.0)),
+        ("U( l , k = 1.96 )", About("U", "l", factor=1.96)),
+        *((text, None) for text in ("U(l, k=0)", "U95(l, k=2)", "u(l, k=2)x", "U(l, 2)", "U(l, k=-2)")),
         ("dof(l)", About("dof", "l")),
         ("r(R,X)", About("r", "R", "X")),
         ("low95(Y)", About("low", "Y", "", 0.95)),
@@ -54,6 +57,16 @@ def test_what_is_wrong_is_told_where_it_stands(
     assert f"error[{code}]" in told
     assert said in told
     assert "published.csv:2:" in told
+
+
+def test_an_expanded_uncertainty_of_a_chosen_factor_is_so_many_u(tmp_path: Path) -> None:
+    """Of two degrees of freedom U95 is more than twice u."""
+    folder = end_gauge(tmp_path, f"{HEADER}\n" + "H.1,u(l),1,1,mm,,,\n")
+    u = Study(folder).refereed.comparisons_u[0].cell.value
+    assert u is not None
+    rows = f'H.1,"U(l, k=2)",1,{2e9 * u:.3f},nm,,,\nH.1,"U(l, k=3)",1,{2e9 * u:.3f},nm,,,\n'
+    (folder / "published.csv").write_text(f"{HEADER}\n{rows}")
+    assert [each.verdict for each in Study(folder).refereed.comparisons_u] == ["same", "differs"]
 
 
 def test_a_known_difference_of_an_uncertainty_is_pinned_in_its_row(

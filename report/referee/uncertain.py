@@ -85,7 +85,12 @@ class _Asked:
         budget = self.spread.budget(about.cell, row, about.level)
         if about.kind in ("low", "high"):
             return self._interval(budget, tolerance)[about.kind == "high"]
-        known = {"u": budget.u, "U": budget.expanded, "k": budget.factor, "dof": budget.dof}
+        known = {
+            "u": budget.u,
+            "U": about.factor * budget.u or budget.expanded,
+            "k": budget.factor,
+            "dof": budget.dof,
+        }
         return known.get(about.kind, math.sqrt(max(budget.u**2 - budget.second, 0.0)))
 
     def _correlation(self, *cells: tuple[str, int]) -> float:
