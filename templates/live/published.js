@@ -33,11 +33,11 @@ function writePublished(look) {
   for (const { id, rows, called, found } of groups) {
     const body = byId(id)?.querySelector("tbody");
     if (!body) continue;
-    found.forEach(({ again, distance, verdict, finding, open }, place) => {
+    found.forEach(({ again, distance, verdict, finding }, place) => {
       const row = body.rows[place], cells = row.cells;
       setText(cells[3], again);
       setText(cells[5], distance === undefined ? "" : distanceText(distance));
-      setText(cells[6], verdict + (open ? ", not refereed" : finding && `, ${finding}`));
+      setText(cells[6], verdict + (finding && `, ${finding}`));
       row.classList.toggle("unexpected", finding !== "");
       cells[3].classList.toggle("changed", !asIssued(look, ...rows[place]));
     });

@@ -70,7 +70,7 @@ def shown(cells: list[Shown]) -> list[str]:
 _SHOWN = re.compile("([-\u2212]?)(\\d[\\d\u202f]*)(\\.\\d+)?(?:[ \u00a0]×[ \u00a0]10([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+))?")
 
 _REFEREED = re.compile(
-    r"(?<=differs), (?:unexpectedly|not refereed)"
+    r"(?<=differs), unexpectedly"
     r"| \d+ of these findings (?:was|were) not expected\.| A build of what stands here tells .* differences\."
 )
 
