@@ -386,7 +386,7 @@ def test_sentences_of_the_checks_are_set_as_mathematics(report: Report, text: st
 
 def test_names_and_units_of_a_method_are_set_in_sentences() -> None:
     """A column that is called like a word of English is a word; Greek letters and powers of units are set."""
-    names = {"rho": r"\rho%s", "slope": r"\mathrm{slope}%s", "rho_k": r"\rho_{k%s}"}
+    names = {"rho": r"\rho%s", "slope": r"\bar{s}%s", "rho_k": r"\rho_{k%s}"}
     sentences = Sentences(Vocabulary(), names, (), ["kg/m^3", "kg", "N*m"])
     printed = sentences.rich("u of rho is 0.25 kg/m^3 and a slope 3 N*m, not kg/m^3s; rho_k[2] is farthest")
     assert printed == (

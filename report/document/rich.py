@@ -31,7 +31,6 @@ _PART = (
 """With the pattern of the units."""
 _RAISED = re.compile(r"[\^*]")
 """What no unit of a table has: it prints them as powers and products."""
-_GREEK = re.compile(r"\\(?!mathrm)[A-Za-z]+")
 _LONE = frozenset("ijk")
 _OTHERWISE = frozenset("aN")
 """Names that sentences use for something else: an article, and the newton."""
@@ -127,7 +126,7 @@ class Sentences:
 
     def _is_no_word(self, name: str) -> bool:
         """Whether a column is not called like a word of English: it has an index, or is a Greek letter."""
-        return name in self.names and ("_" in name or _GREEK.match(self.names[name]) is not None)
+        return name in self.names and ("_" in name or self.names[name].startswith(f"\\{name}"))
 
     def _power(self, text: str) -> str:
         """LaTeX of an exponent: digits or a name."""

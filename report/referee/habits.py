@@ -32,6 +32,8 @@ __all__ = [
 
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
+MOST_TESTS = 100
+"""Of more than so many none is left out of all averages at a time: the search would take minutes."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +196,7 @@ def without_a_test(search: Search) -> Iterator[Explained]:
             for n, value in enumerate(problem.published)
             if problem.sheet[value.cell].axis is None and _rests_on(problem, value.cell, columns)
         ]
-        if len(members) < 2 or not search.worth(members):
+        if len(members) < 2 or len(table.tests) > MOST_TESTS or not search.worth(members):
             continue
         cells = [problem.published[n].cell for n in members]
         program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
@@ -203,15 +205,17 @@ def without_a_test(search: Search) -> Iterator[Explained]:
             Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in range(len(table.tests))
         ]
         asked = [(problem.computed(way, members), None) for way in ways]
-        for place, now in sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)[:1]:
-            would = f"without {table.row} {table.called(table.tests[place])}"
-            published = [problem.published[n] for n in members]
-            changes = [
-                Change("rows", p.cell, (), p.source, p.printed.text, would, count=int(p is published[0]))
-                for p in published
-            ]
-            changed = asked[place][0]
-            yield search.explained(changes, changed, changed.box, now)
+        found = sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)
+        if found:
+            tests = (table.called(table.tests[place]) for place, _ in found)
+            would, *also = (f"without {table.row} {test}" for test in tests)
+            first, *others = (
+                Change("rows", p.cell, (), p.source, p.printed.text, would, count=0)
+                for p in (problem.published[n] for n in members)
+            )
+            changes = [replace(first, also=tuple(also), count=1), *others]
+            changed = asked[found[0][0]][0]
+            yield search.explained(changes, changed, changed.box, found[0][1])
 
 
 def _rests_on(problem: Problem, cell: str, columns: Collection[str]) -> bool:
