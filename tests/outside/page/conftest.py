@@ -33,6 +33,30 @@ def browser(require: Callable[..., str]) -> Iterator[Browser]:
 
 Windows = dict[str, list[Page]]
 
+# What a page asks of a worker after an edit takes a second: that begins when a test waits for it.
+_LATER = """(() => {
+  const Real = self.Worker, waiting = new Set();
+  let now = false;
+  self.Worker = class {
+    constructor(...how) { this.how = how; waiting.add(this); }
+    postMessage(message) { this.message = message; if (now) this.begin(); }
+    begin() {
+      waiting.delete(this);
+      const { onmessage, onerror } = this;
+      this.real = Object.assign(new Real(...this.how), { onmessage, onerror });
+      this.real.postMessage(this.message);
+    }
+    terminate() { waiting.delete(this); this.real?.terminate(); }
+  };
+  self.beginDraws = () => { now = true; waiting.forEach((one) => one.message && one.begin()); };
+})()"""
+
+
+@pytest.fixture
+def draws_at_once() -> bool:
+    """Whether workers begin as they do for users, whoever waits for what they find."""
+    return False
+
 
 @pytest.fixture(scope="session")
 def windows() -> Windows:
@@ -41,7 +65,7 @@ def windows() -> Windows:
 
 
 @pytest.fixture
-def open_page(browser: Browser, issued: Path, windows: Windows) -> Iterator[Open]:
+def open_page(browser: Browser, issued: Path, windows: Windows, draws_at_once: bool) -> Iterator[Open]:
     """Open a file, the page of the paper without one, in a browser that has no network.
 
     With `own=True` in a window that is not used again; `at` is how the link ends.
@@ -56,9 +80,14 @@ def open_page(browser: Browser, issued: Path, windows: Windows) -> Iterator[Open
         viewport: ViewportSize = SIZE,
         **options: Any,
     ) -> driving.Live:
-        kind = repr(sorted(options.items()))
+        kind = repr((draws_at_once, *sorted(options.items())))
         free = [] if own else windows.setdefault(kind, [])
-        page = free.pop() if free else browser.new_context(offline=True, **options).new_page()
+        if free:
+            page = free.pop()
+        else:
+            page = browser.new_context(offline=True, **options).new_page()
+            if not draws_at_once:
+                page.add_init_script(_LATER)
         if not own:
             again.append((kind, page))
         page.set_viewport_size(viewport)

@@ -165,6 +165,7 @@ class Live:
 
     def wait_for_draws(self) -> None:
         """Until a worker has looked at terms of second order, and drawn."""
+        self.page.evaluate("() => self.beginDraws?.()")
         self.page.wait_for_function("() => document.documentElement.dataset.draws === 'done'")
 
     def state(self) -> list[str]:

@@ -34,6 +34,11 @@ ASK = """(message) => new Promise((resolve, reject) => {
 })"""
 
 
+@pytest.fixture
+def draws_at_once() -> bool:
+    return True
+
+
 def drawn(
     report: Report, name: str, label: tuple[int, ...] = (), size: int = 100_000
 ) -> np.ndarray[Any, Any]:
