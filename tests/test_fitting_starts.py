@@ -12,6 +12,7 @@ import test_fit
 from nist_strd import Strd, digits
 from sympy import Rational
 from test_fit import NONLINEAR, Array, cells, write
+from test_live_second_order import SCRIPTS
 from test_live_uncertain import in_node
 
 from loopsheet.report.cli import main
@@ -24,7 +25,6 @@ from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import draw
 from loopsheet.report.uncertainty.propagation import Spread
-from loopsheet.report.views import live
 
 
 def sheet_of(strd: Strd, start: Array) -> tuple[Sheet, Sheet, dict[str, Any], dict[str, Any]]:
@@ -202,9 +202,8 @@ console.log(JSON.stringify([...found]));
 
 
 def test_so_do_the_draws_of_a_page(tmp_path: Path, require: Callable[..., str]) -> None:
-    scripts = (*live.ALONE, "numbers.js", "inputs.js", "trace.js", "coverage.js", "sure.js", "cells.js")
     near, far = (
-        in_node(require("node"), report, {"self": {"document": 1}}, scripts, DRAWN)
+        in_node(require("node"), report, {"self": {"document": 1}}, SCRIPTS, DRAWN)
         for report in from_near_and_far(tmp_path)
     )
     assert len(near) == len(far) == 2000

@@ -33,7 +33,7 @@ __all__ = [
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
 MOST_TESTS = 100
-"""Of more than so many none is left out of all averages at a time: the search would take minutes."""
+"""Of more than so many none is left out of all averages at a time: with a hundred a check takes a minute."""
 
 
 @dataclass(frozen=True)
@@ -191,31 +191,17 @@ def without_a_test(search: Search) -> Iterator[Explained]:
     problem, campaign = search.problem, search.problem.campaign
     for table in campaign.inputs.tables:
         columns = [name for name in table.measured if name in problem.sheet]
-        members = [
-            n
-            for n, value in enumerate(problem.published)
-            if problem.sheet[value.cell].axis is None and _rests_on(problem, value.cell, columns)
-        ]
+        resting = sorted(_resting_on(problem, columns))
+        members = [n for n in resting if problem.sheet[problem.published[n].cell].axis is None]
         if len(members) < 2 or len(table.tests) > MOST_TESTS or not search.worth(members):
             continue
         cells = [problem.published[n].cell for n in members]
         program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
         own = [name for name in columns if name in program.sheet]
-        ways = [
-            Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in range(len(table.tests))
-        ]
-        asked = [(problem.computed(way, members), None) for way in ways]
-        found = sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)
-        if found:
-            tests = (table.called(table.tests[place]) for place, _ in found)
-            would, *also = (f"without {table.row} {test}" for test in tests)
-            first, *others = (
-                Change("rows", p.cell, (), p.source, p.printed.text, would, count=0)
-                for p in (problem.published[n] for n in members)
-            )
-            changes = [replace(first, also=tuple(also), count=1), *others]
-            changed = asked[found[0][0]][0]
-            yield search.explained(changes, changed, changed.box, found[0][1])
+        every = range(len(table.tests))
+        ways = [Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in every]
+        told = [f"without {table.row} {table.called(test)}" for test in table.tests]
+        yield from _over_rows(search, members, ways, told)
 
 
 def _rests_on(problem: Problem, cell: str, columns: Collection[str]) -> bool:
@@ -235,14 +221,24 @@ def other_rows(search: Search) -> Iterator[Explained]:
             continue
         rows = dict(_rows(problem.campaign.values.layouts[axes[0].name].labels))
         ways = over_rows(column, axes[0], list(rows.values()), sheet)
-        asked = [(problem.computed(way, {n}), None) for way in ways]
-        found = sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)
-        if found:
-            would, *also = (list(rows)[place] for place, _ in found)
-            text = value.printed.text
-            change = Change("rows", value.cell, (), value.source, text, would, tuple(also))
-            changed = asked[found[0][0]][0]
-            yield search.explained([change], changed, changed.box, found[0][1])
+        yield from _over_rows(search, [n], ways, list(rows))
+
+
+def _over_rows(
+    search: Search, members: Sequence[int], ways: Sequence[Way], told: Sequence[str]
+) -> Iterator[Explained]:
+    """Published values that all were computed in one of some ways, of which each is told."""
+    asked = [(search.problem.computed(way, members), None) for way in ways]
+    found = sorted(search.likeliest(asked), key=lambda one: one[1].mismatch)
+    if found:
+        would, *also = (told[place] for place, _ in found)
+        first, *others = (
+            Change("rows", value.cell, (), value.source, value.printed.text, would, count=0)
+            for value in (search.problem.published[n] for n in members)
+        )
+        changes = [replace(first, also=tuple(also), count=1), *others]
+        changed = asked[found[0][0]][0]
+        yield search.explained(changes, changed, changed.box, found[0][1])
 
 
 def _rows(labels: NDArray[np.int64]) -> Iterator[tuple[str, NDArray[np.intp]]]:
@@ -319,7 +315,7 @@ def rounded_constants(search: Search) -> Iterator[Explained]:
         name = column.name
         if name not in constants or campaign.suspects(name) or not column.exact:
             continue
-        touched = _resting_on(own, column)
+        touched = _resting_on(own, [column.name])
         if not touched or not search.worth(touched):
             continue
         printed = campaign.inputs.parameters[name]
@@ -342,7 +338,7 @@ COUNTS = (
 def _other_count(search: Search, column: Column) -> Iterator[Explained]:
     """Another number of rows that each row of an axis is repeated to."""
     own = search.problem
-    touched = _resting_on(own, column)
+    touched = _resting_on(own, [column.name])
     if not touched or not search.worth(touched):
         return
     counts = [count for count in COUNTS if count != own.campaign.data[column.name]]
@@ -361,7 +357,6 @@ def _with(campaign: Campaign, column: Column, value: float) -> Campaign:
     return replace(campaign, data=data, values=evaluate(program.sheet, campaign.labels, data, program))
 
 
-def _resting_on(problem: Problem, column: Column) -> frozenset[int]:
-    sheet = problem.sheet
-    names = {c.name for c in sheet.columns if column.name in {a.name for a in sheet.ancestors(c)}}
-    return frozenset(n for n, value in enumerate(problem.published) if value.cell in names)
+def _resting_on(problem: Problem, names: Collection[str]) -> frozenset[int]:
+    """The places of the published values that rest on one of some columns."""
+    return frozenset(n for n, value in enumerate(problem.published) if _rests_on(problem, value.cell, names))

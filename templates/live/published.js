@@ -17,8 +17,8 @@ function compared(look, [cell, index, text, scale, truncated, known, other]) {
     return { again, verdict: "no value", finding };
   }
   const { again, distance, same } = beside(look.trace.sheet.value[cell][row], text, (scale || [1, 1]).map(BigInt), truncated);
-  if (!same && known === null && !asIssued(look, cell, index)) return { again, distance, verdict: "differs", finding: "", open: true };
-  return { again, distance, verdict: same ? "same" : "differs", finding: findingOf(same, again, known, other) };
+  const open = !same && known === null && !asIssued(look, cell, index); // whether that is a finding, a referee decides
+  return { again, distance, verdict: same ? "same" : "differs", finding: open ? "" : findingOf(same, again, known, other), open };
 }
 
 function asIssued(look, cell, index) {
