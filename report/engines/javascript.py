@@ -22,7 +22,7 @@ from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowOrde
 from ..plan.nodes import Node as PlanNode
 from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
-from .javascript_intervals import enclose, needed
+from .javascript_intervals import NOTHING, enclose, needed
 
 __all__ = ["LOOPS", "RUNTIME", "program"]
 
@@ -238,7 +238,7 @@ class _Scope:
         def terms(total: RowSum) -> tuple[str, Any]:
             inner: dict[Expr, Symbol] = {}
             body = self.plain(total.args[0], "q", inner)
-            return total.args[1].name, Symbol("ALL") if inner else body
+            return total.args[1].name, NOTHING if inner else body
 
         unknown, self.unknown = self.unknown, plain
         text = enclose(form, steepness, known, lambda e, s: self.plain(e, "r", s), terms)

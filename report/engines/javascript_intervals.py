@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -39,76 +40,78 @@ from sympy.logic.boolalg import Boolean
 
 from ..plan.nodes import RowSum
 
-__all__ = ["FUNCTIONS", "enclose", "interval", "needed"]
+__all__ = ["FUNCTIONS", "NOTHING", "enclose", "interval", "needed"]
 
 FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "minified" / "intervals.js"
 """The functions, a part for each."""
 
 _RISING = {exp: "exp", log: "log", atan: "atan", tanh: "tanh", sinh: "sinh", asinh: "asinh"}
-_UNKNOWN = "ALL"
-"""What is printed for a function that the intervals do not know: anything."""
+NOTHING = Symbol("ALL")
+"""What stands for that of which the intervals know nothing: anything."""
+
+Ends = tuple[str, str]
+"""An interval as it is printed: its lower end, and then the upper one, which the call before it may leave."""
 
 
-def interval(expression: Any) -> str:
-    """An expression of numbers and intervals.
+def interval(expression: Any, wide: Container[str]) -> Ends:
+    """An expression of numbers and intervals, which have the names in `wide`.
 
     Examples
     --------
     >>> from sympy.abc import x, y
-    >>> interval(x * y**2 - 1)
-    'plus(-1, times(power(y, 2), x))'
-    >>> interval(log(x) / 3)
-    'times(rising(Math.log, x), times(1, power(3, -1)))'
+    >>> interval(x * y**2 - 1, {"x"})
+    ('plus(-1, -1, times(power(y, y, 2), up[0], x, x_), up[0])', 'up[0]')
+    >>> interval(log(x) / 3, "x")
+    ('times(rising(Math.log, x, x_), up[0], times(1, 1, power(3, 3, -1), up[0]), up[0])', 'up[0]')
     """
-    if isinstance(expression, (Add, Mul)):
-        function = "plus" if isinstance(expression, Add) else "times"
-        return _nested(function, sorted(map(interval, expression.args)))
+    if expression == NOTHING:
+        return "-Infinity", "Infinity"
     if isinstance(expression, Symbol):
-        return str(expression.name)
+        name = str(expression.name)
+        return (name, f"{name}_" if name in wide else name)
+    if expression.is_Integer:
+        return str(expression), str(expression)
     if isinstance(expression, Rational):
-        whole = expression.is_Integer
-        return str(expression) if whole else f"times({expression.p}, power({expression.q}, -1))"
+        above, below = str(expression.p), str(expression.q)
+        return _call("times", above, above, *_call("power", below, below, "-1"))
     if isinstance(expression, Number) or expression == pi:
         number = float(expression)
-        return f"out({number!r}, {number!r})"
+        return _call("out", f"{number!r}, {number!r}")
+    if isinstance(expression, (Add, Mul)):
+        function = "plus" if isinstance(expression, Add) else "times"
+        first, *others = sorted(interval(each, wide) for each in expression.args)
+        return reduce(lambda found, each: _call(function, *found, *each), others, first)
     if isinstance(expression, Pow):
-        return _power(*expression.args)
+        base, exponent = expression.args
+        if exponent.is_Integer:
+            return _call("power", *interval(base, wide), str(exponent))
+        logarithm = _call("rising", "Math.log", *interval(base, wide))
+        return _call("rising", "Math.exp", *_call("times", *interval(exponent, wide), *logarithm))
     if type(expression) in _RISING:
-        return f"rising(Math.{_RISING[type(expression)]}, {interval(expression.args[0])})"
-    if isinstance(expression, (cos, sin)):
-        inner = interval(expression.args[0])
-        return (
-            f"cosine(plus({inner}, out(-Math.PI / 2, -Math.PI / 2)))"
-            if isinstance(expression, sin)
-            else f"cosine({inner})"
-        )
-    return _UNKNOWN
+        inner = interval(expression.args[0], wide)
+        return _call("rising", f"Math.{_RISING[type(expression)]}", *inner)
+    if isinstance(expression, cos):
+        return _call("cosine", *interval(expression.args[0], wide))
+    if isinstance(expression, sin):
+        quarter = _call("out", "-Math.PI / 2", "-Math.PI / 2")
+        return _call("cosine", *_call("plus", *interval(expression.args[0], wide), *quarter))
+    return interval(NOTHING, wide)
 
 
-def _nested(function: str, parts: Sequence[str]) -> str:
-    found = parts[0]
-    for part in parts[1:]:
-        found = f"{function}({found}, {part})"
-    return found
+def _call(function: str, *arguments: str) -> Ends:
+    return f"{function}({', '.join(arguments)})", "up[0]"
 
 
-def _power(base: Expr, exponent: Expr) -> str:
-    if exponent == 2 and base.is_Symbol and base.name.startswith("$"):
-        return f"times({base.name}, {base.name})"  # a number, not an interval
-    if exponent.is_Integer:
-        return f"power({interval(base)}, {exponent})"
-    return f"rising(Math.exp, times({interval(exponent)}, rising(Math.log, {interval(base)})))"
-
-
-def _certain(condition: Any) -> str:
+def _certain(condition: Any, wide: Container[str]) -> str:
     """That a condition holds all over its intervals."""
     if condition == true:
         return "true"
     if isinstance(condition, And):
-        return " && ".join(map(_certain, sorted(condition.args, key=str)))
+        return " && ".join(_certain(each, wide) for each in sorted(condition.args, key=str))
     signs = {Gt: "=== 1", Lt: "=== -1", Ne: "!== 0", Ge: "=== 1", Le: "=== -1"}
     if type(condition) in signs:
-        return f"side({interval(condition.lhs - condition.rhs)}) {signs[type(condition)]}"
+        ends = interval(condition.lhs - condition.rhs, wide)
+        return f"side({', '.join(ends)}) {signs[type(condition)]}"
     return "false"
 
 
@@ -126,24 +129,27 @@ def enclose(
     """
     found: dict[Expr, Symbol] = {}
     bodies = [plain(each, found) for each in (form, steepness)]
-    condition = _certain(plain(known, found))
+    wide = {"u"}
+    condition = plain(known, found)
     by_axis: dict[str, list[tuple[Symbol, Any]]] = {}
     for total, name in found.items():
         axis, body = terms(total)
         by_axis.setdefault(axis, []).append((name, body))
     lines = []
     for axis, own in by_axis.items():
-        names = ", ".join(str(name) for name, _ in own)
-        inner, texts = _common([body for _, body in own], "w_")
-        lines.append(f"      const [{names}] = sums(k.{axis}, (q) => {{")
+        inner, terms_of = _common([body for _, body in own], "w_", wide)
+        names = ", ".join(f"{name}, {name}_" for name, _ in own)
+        lines.append(f"      const [{names}] = sums(k.{axis}, {len(own)}, (q, s) => {{")
         lines += [f"        {line}" for line in inner]
-        lines += [f"        return [{', '.join(texts)}];", "      });"]
-    outer, texts = _common(bodies, "t_")
+        ends = [end for both in terms_of for end in both]
+        lines += [f"        s[{n}] = {end};" for n, end in enumerate(ends)]
+        lines.append("      });")
+        wide |= {str(name) for name, _ in own}
+    outer, (value, course) = _common(bodies, "t_", wide)
     lines += [f"      {line}" for line in outer]
-    value, course = texts
-    if condition != "true":
-        course = f"{condition} ? {course} : ALL"
-    return "\n".join(["(r, u) => {", *lines, f"      return [{value}, {course}];", "    }"])
+    certain = _certain(condition, wide)
+    slope = ", ".join(course) if certain == "true" else f"...({certain} ? [{', '.join(course)}] : ALL)"
+    return "\n".join(["(r, u, u_) => {", *lines, f"      return [{', '.join(value)}, {slope}];", "    }"])
 
 
 def needed(program: str) -> str:
@@ -160,7 +166,12 @@ def needed(program: str) -> str:
     return "\n\n".join(part for part in parts if part in found)
 
 
-def _common(bodies: Sequence[Any], prefix: str) -> tuple[list[str], list[str]]:
-    """Statements for what expressions have in common, and the texts of the expressions."""
+def _common(bodies: Sequence[Any], prefix: str, wide: set[str]) -> tuple[list[str], list[Ends]]:
+    """Statements for what expressions have in common, and the expressions; `wide` gets the new names."""
     common, reduced = cse(list(bodies), symbols=numbered_symbols(prefix), order="none", list=True)
-    return [f"const {name} = {interval(value)};" for name, value in common], list(map(interval, reduced))
+    lines = []
+    for name, value in common:
+        low, high = interval(value, wide)
+        lines.append(f"const {name} = {low}, {name}_ = {high};")
+        wide.add(str(name))
+    return lines, [interval(body, wide) for body in reduced]

@@ -1,76 +1,78 @@
-// Intervals [low, high], rounded outwards: each holds what an operation gives for any numbers in its arguments,
-// of which one may be a plain number. Of the elementary functions 4 units in the last place are allowed for.
+// Intervals, rounded outwards: each holds what an operation gives for any numbers in its arguments. Of the elementary
+// functions 4 units in the last place are allowed for. Most of an edit is spent here, so that an interval is no object but
+// two numbers, one behind the other: a function gives the lower end, and leaves the upper one in `up[0]`.
 // A program brings what it calls of these, part by part: a blank line is between two of them.
+
+const up = new Float64Array(1);
 
 const ALL = [-Infinity, Infinity];
 
-const span = (x) => (x.length ? x : [x, x]);
+const side = (low, high) => (low > 0 ? 1 : high < 0 ? -1 : 0);
 
-function side(x) {
-  const [low, high] = span(x);
-  return low > 0 ? 1 : high < 0 ? -1 : 0;
-}
-
-function out(low, high, by = Number.EPSILON) {
+function out(low, high, places = 1) {
+  const by = places * Number.EPSILON;
   low -= Math.abs(low) * by + Number.MIN_VALUE;
   high += Math.abs(high) * by + Number.MIN_VALUE;
-  return low <= high ? [low, high] : [-Infinity, Infinity]; // no number means that nothing is known
+  const known = low <= high; // no number means that nothing is known
+  up[0] = known ? high : Infinity;
+  return known ? low : -Infinity;
 }
 
-function plus(x, y) {
-  let a = x, b = x, c = y, d = y;
-  if (x.length) a = x[0], b = x[1];
-  if (y.length) c = y[0], d = y[1];
-  return out(a + c, b + d);
+const plus = (a, b, c, d) => out(a + c, b + d);
+
+function times(a, b, c, d) {
+  const p = a * c, q = a * d, r = b * c, s = b * d;
+  let low = p, high = p; // 0 times infinity is no number: another one of these tells, or nothing is known
+  if (q < low) low = q;
+  else if (q > high) high = q;
+  if (r < low) low = r;
+  else if (r > high) high = r;
+  if (s < low) low = s;
+  else if (s > high) high = s;
+  return out(low, high);
 }
 
-function times(x, y) {
-  let a = x, b = x, c = y, d = y;
-  if (x.length) a = x[0], b = x[1]; // no arrays taken apart: most of an edit is spent here
-  if (y.length) c = y[0], d = y[1];
-  const p = a * c || 0, q = a * d || 0, r = b * c || 0, s = b * d || 0;
-  return out(Math.min(p, q, r, s), Math.max(p, q, r, s));
+function power(a, b, n) {
+  const p = a ** Math.abs(n), q = b ** Math.abs(n);
+  let c = out(Math.min(p, q), Math.max(p, q), 4);
+  if (a >= 0 || !(n % 2)) c = a < 0 && b > 0 ? 0 : Math.max(c, 0); // rounding outwards takes none of these below zero
+  if (n > 0) return c;
+  const d = up[0];
+  return c > 0 || d < 0 ? out(1 / d, 1 / c) : c === 0 ? out(1 / d, Infinity) : out(-Infinity, Infinity);
 }
 
-function power(x, n) {
-  const [a, b] = span(x), p = a ** Math.abs(n), q = b ** Math.abs(n);
-  let [c, d] = n % 2 || a > 0 || b < 0 ? out(Math.min(p, q), Math.max(p, q), 4 * Number.EPSILON) : [0, out(p, Math.max(p, q), 4 * Number.EPSILON)[1]];
-  if (a >= 0) c = Math.max(c, 0); // rounding outwards takes no power of a positive number below zero
-  if (n > 0) return [c, d];
-  return c > 0 || d < 0 ? out(1 / d, 1 / c) : c === 0 ? out(1 / d, Infinity) : ALL;
+const rising = (f, a, b) => out(f(a), f(b), 4);
+
+function cosine(a, b) {
+  const first = Math.ceil(a / Math.PI - 1e-9), last = Math.floor(b / Math.PI + 1e-9);
+  const known = last - first < 1 && Math.abs(a) + Math.abs(b) < 1e6;
+  const c = Math.cos(a), d = Math.cos(b), turn = known && first === last && 1 - 2 * Math.abs(first % 2);
+  up[0] = turn === 1 || !known ? 1 : Math.max(c, d) + 4 * Number.EPSILON;
+  return turn === -1 || !known ? -1 : Math.min(c, d) - 4 * Number.EPSILON;
 }
 
-function rising(f, x) {
-  return x.length ? out(f(x[0]), f(x[1]), 4 * Number.EPSILON) : out(f(x), f(x), 4 * Number.EPSILON);
-}
-
-function cosine(x) {
-  const [a, b] = span(x), first = Math.ceil(a / Math.PI - 1e-9), last = Math.floor(b / Math.PI + 1e-9);
-  if (!(last - first < 1 && Math.abs(a) + Math.abs(b) < 1e6)) return [-1, 1];
-  const [c, d] = [Math.cos(a), Math.cos(b)], turn = first === last && 1 - 2 * Math.abs(first % 2);
-  return [turn === -1 ? -1 : Math.min(c, d) - 4 * Number.EPSILON, turn === 1 ? 1 : Math.max(c, d) + 4 * Number.EPSILON];
-}
-
-// Of several terms over the rows that are kept. All additions together lose no more than each a half unit of the last
-// place of the sum of what is added, whatever its signs.
-function sums(kept, terms) {
-  const low = [], high = [], size = [];
-  let count = 0;
+// Of several terms over the rows that are kept, which `terms` writes down. All additions together lose no more than each
+// a half unit of the last place of the sum of what is added, whatever its signs.
+function sums(kept, count, terms) {
+  const own = new Float64Array(2 * count), all = new Float64Array(2 * count), size = new Float64Array(count);
+  let rows = 0;
   for (let row = 0; row < kept.length; row++) {
     if (!kept[row]) continue;
-    const found = terms(row);
-    for (let n = 0; n < found.length; n++) {
-      let a = found[n], b = a;
-      if (a.length) b = a[1], a = a[0];
-      if (count) low[n] += a, high[n] += b, size[n] += Math.max(-a, b);
-      else low[n] = a, high[n] = b, size[n] = Math.max(-a, b);
+    terms(row, own);
+    for (let n = 0; n < count; n++) {
+      const a = own[2 * n], b = own[2 * n + 1];
+      all[2 * n] += a;
+      all[2 * n + 1] += b;
+      size[n] += Math.max(-a, b);
     }
-    count += 1;
+    rows += 1;
   }
-  return low.map((_, n) => {
-    const lost = count * Number.EPSILON * size[n];
-    return out(low[n] - lost, high[n] + lost);
-  });
+  for (let n = 0; n < count; n++) {
+    const lost = rows * Number.EPSILON * size[n];
+    all[2 * n] = out(all[2 * n] - lost, all[2 * n + 1] + lost);
+    all[2 * n + 1] = up[0];
+  }
+  return all;
 }
 
 // The roots of a form in an interval, each between two points where its sign is certain. A part is settled where
@@ -78,13 +80,13 @@ function sums(kept, terms) {
 // The parts of a program's first sheet are kept in `seen`: mostly they are settled in its others, too.
 function isolate(root, row, low, high, told) {
   const look = (a, b) => {
-    const [f, slope] = root.enclose(row, [a, b]);
-    if (side(f) || side(slope)) return [side(f), side(slope)];
-    const mid = (a + b) / 2, [g] = root.enclose(row, [mid, mid]);
-    return [side(plus(g, times(slope, plus([a, b], -mid)))), 0];
+    const [f, g, s, t] = root.enclose(row, a, b);
+    if (side(f, g) || side(s, t)) return [side(f, g), side(s, t)];
+    const mid = (a + b) / 2, [c, d] = root.enclose(row, mid, mid);
+    return [side(plus(c, d, times(s, t, plus(a, b, -mid, -mid), up[0]), up[0]), up[0]), 0];
   };
-  const parts = [], found = [];
-  let left = 2000, place = low, way = 0, [was, last] = [low, high].map((end, at) => look(end, end)[0] || Math.sign(told[at]));
+  const parts = [], found = [], signAt = (end, at, part) => part?.[2] || look(end, end)[0] || Math.sign(told[at]);
+  let left = 2000, place = low, way = 0;
   const cut = (a, b, n) => {
     const [f, slope] = look(a, b), mid = (a + b) / 2;
     if (f || slope || !n || --left < 0) parts.push([a, b, f, slope]);
@@ -96,7 +98,8 @@ function isolate(root, row, low, high, told) {
   const kept = root.seen[row], ends = kept?.[0] === low && kept.at(-1) === high ? kept : [low, high];
   if (low < high) for (let n = 1; n < ends.length; n++) cut(ends[n - 1], ends[n], 48);
   root.seen[row] ??= [low, ...parts.map(([, b]) => b)];
-  for (const [a, b, s, slope] of [...parts, [high, high, last, 0]]) {
+  let was = signAt(low, 0, parts[0]);
+  for (const [a, b, s, slope] of [...parts, [high, high, signAt(high, 1, parts.at(-1)), 0]]) {
     if (!s && slope && way * slope >= 0) {
       way = slope;
       continue;

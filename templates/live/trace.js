@@ -16,7 +16,7 @@ class Trace {
     this.declared = Object.fromEntries(program.columns.map((column) => [column.name, column]));
     // What is only drawn is no cell of the report.
     this.order = program.columns.filter(({ name }) => columns[name]);
-    this.found = {};
+    [this.found, this.origins] = [{}, {}];
     const limits = Object.values(columns).flatMap((column) => column.limits ?? []);
     this.silent = new Set(limits.filter(([, , , silent]) => silent).map(([, mark]) => mark));
   }
@@ -94,14 +94,16 @@ class Trace {
     return start && this.declared[found.name].loop === loop ? { name, row } : found;
   }
 
+  // Only in a loop one may come back to a cell, which is then in `seen`.
   origin(name, row, seen) {
-    seen.push(this.address(name, row));
+    const known = (this.origins[name] ??= []), { loop } = this.declared[name], here = loop && this.address(name, row);
+    if (!loop && known[row] !== undefined) return known[row];
+    if (seen.includes(here)) return null;
+    if (loop) seen.push(here);
     const wrong = this.wrong(name, row);
-    for (const { name: other, rows } of wrong) {
-      const found = !seen.includes(this.address(other, rows[0])) && this.origin(other, rows[0], seen);
-      if (found) return found;
-    }
-    return wrong.length ? null : { name, row };
+    let found = wrong.length ? null : { name, row };
+    for (const { name: other, rows } of wrong) found ??= this.origin(other, rows[0], seen);
+    return (known[row] = found);
   }
 
   // The precedents in error, first those before its loop; a loop that did not settle is where it began.

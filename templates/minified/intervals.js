@@ -1,21 +1,21 @@
+let up=new Float64Array(1);
+
 let ALL=[-1/0,1/0];
 
-let span=n=>n.length?n:[n,n];
+let side=(s,c)=>s>0?1:c<0?-1:0;
 
-function side(n){const[s,t]=span(n);return s>0?1:t<0?-1:0}
+function out(u,t,N=1){let b=N*Number.EPSILON,r=(u-=Math.abs(u)*b+Number.MIN_VALUE)<=(t+=Math.abs(t)*b+Number.MIN_VALUE);return up[0]=r?t:1/0,r?u:-1/0}
 
-function out(u,N,b=Number.EPSILON){return(u-=Math.abs(u)*b+Number.MIN_VALUE)<=(N+=Math.abs(N)*b+Number.MIN_VALUE)?[u,N]:[-1/0,1/0]}
+let plus=(o,s,t,u)=>out(o+t,s+u);
 
-function plus(t,n){let e=t,l=t,u=n,g=n;return t.length&&(e=t[0],l=t[1]),n.length&&(u=n[0],g=n[1]),out(e+u,l+g)}
+function times(t,n,e,o){let u=t*e,c=t*o,i=n*e,r=n*o;let s=u,f=u;return c<s?s=c:c>f&&(f=c),i<s?s=i:i>f&&(f=i),r<s?s=r:r>f&&(f=r),out(s,f)}
 
-function times(t,n){let e=t,h=t,a=n,i=n;t.length&&(e=t[0],h=t[1]),n.length&&(a=n[0],i=n[1]);let l=e*a||0,m=e*i||0,o=h*a||0,u=h*i||0;return out(Math.min(l,m,o,u),Math.max(l,m,o,u))}
+function power(t,a,o){let u=t**Math.abs(o),n=a**Math.abs(o);let h=out(Math.min(u,n),Math.max(u,n),4);if(!(t>=0)&&o%2||(h=t<0&&a>0?0:Math.max(h,0)),o>0)return h;let r=up[0];return h>0||r<0?out(1/r,1/h):0===h?out(1/r,1/0):out(-1/0,1/0)}
 
-function power(t,a){const[u,o]=span(t),h=u**Math.abs(a),m=o**Math.abs(a);let[n,M]=a%2||u>0||o<0?out(Math.min(h,m),Math.max(h,m),4*Number.EPSILON):[0,out(h,Math.max(h,m),4*Number.EPSILON)[1]];return u>=0&&(n=Math.max(n,0)),a>0?[n,M]:n>0||M<0?out(1/M,1/n):0===n?out(1/M,1/0):ALL}
+let rising=(i,n,o)=>out(i(n),i(o),4);
 
-function rising(u,n){return n.length?out(u(n[0]),u(n[1]),4*Number.EPSILON):out(u(n),u(n),4*Number.EPSILON)}
+function cosine(a,t){let h=Math.ceil(a/Math.PI-1e-9),M=Math.floor(t/Math.PI+1e-9),e=M-h<1&&Math.abs(a)+Math.abs(t)<1e6,o=Math.cos(a),s=Math.cos(t),c=e&&h===M&&1-2*Math.abs(h%2);return up[0]=1!==c&&e?Math.max(o,s)+4*Number.EPSILON:1,-1!==c&&e?Math.min(o,s)-4*Number.EPSILON:-1}
 
-function cosine(a){const[t,h]=span(a),M=Math.ceil(t/Math.PI-1e-9),e=Math.floor(h/Math.PI+1e-9);if(!(e-M<1&&Math.abs(t)+Math.abs(h)<1e6))return[-1,1];const[n,s]=[Math.cos(t),Math.cos(h)],o=M===e&&1-2*Math.abs(M%2);return[-1===o?-1:Math.min(n,s)-4*Number.EPSILON,1===o?1:Math.max(n,s)+4*Number.EPSILON]}
+function sums(t,r,o){let e=new Float64Array(2*r),n=new Float64Array(2*r),a=new Float64Array(r);let l=0;for(let u=0;u<t.length;u++)if(t[u]){o(u,e);for(let t=0;t<r;t++){let r=e[2*t],o=e[2*t+1];n[2*t]+=r,n[2*t+1]+=o,a[t]+=Math.max(-r,o)}l+=1}for(let t=0;t<r;t++){let r=l*Number.EPSILON*a[t];n[2*t]=out(n[2*t]-r,n[2*t+1]+r),n[2*t+1]=up[0]}return n}
 
-function sums(t,n){let e=[],o=[],l=[];let r=0;for(let u=0;u<t.length;u++){if(!t[u])continue;let a=n(u);for(let t=0;t<a.length;t++){let n=a[t],u=n;n.length&&(u=n[1],n=n[0]),r?(e[t]+=n,o[t]+=u,l[t]+=Math.max(-n,u)):(e[t]=n,o[t]=u,l[t]=Math.max(-n,u))}r+=1}return e.map((t,n)=>{let u=r*Number.EPSILON*l[n];return out(e[n]-u,o[n]+u)})}
-
-function isolate(e,s,n,t,i){let l=(n,t)=>{const[i,l]=e.enclose(s,[n,t]);if(side(i)||side(l))return[side(i),side(l)];let o=(n+t)/2,[r]=e.enclose(s,[o,o]);return[side(plus(r,times(l,plus([n,t],-o)))),0]},o=[],r=[];let u=2e3,c=n,f=0,[p,a]=[n,t].map((e,s)=>l(e,e)[0]||Math.sign(i[s]));let d=(e,s,n)=>{const[t,i]=l(e,s),r=(e+s)/2;t||i||!n||--u<0?o.push([e,s,t,i]):(d(e,r,n-1),d(r,s,n-1))},h=e.seen[s],m=h?.[0]===n&&h.at(-1)===t?h:[n,t];if(n<t)for(let e=1;e<m.length;e++)d(m[e-1],m[e],48);e.seen[s]??=[n,...o.map(([,e])=>e)];for(const[e,s,n,i]of[...o,[t,t,a,0]])if(!n&&i&&f*i>=0)f=i;else{if(!n&&e<s)return[null,e,s];if(e>c?!(p*n):p*n<0)return[null,c,e];p*n<0&&r.push([c,e,n]),[c,p,f]=[s,n,0]}return r}
+function isolate(e,s,n,t,u){let i=(n,t)=>{const[u,i,l,o]=e.enclose(s,n,t);if(side(u,i)||side(l,o))return[side(u,i),side(l,o)];let r=(n+t)/2,[c,f]=e.enclose(s,r,r);return[side(plus(c,f,times(l,o,plus(n,t,-r,-r),up[0]),up[0]),up[0]),0]},l=[],o=[],r=(e,s,n)=>n?.[2]||i(e,e)[0]||Math.sign(u[s]);let c=2e3,f=n,p=0;let a=(e,s,n)=>{const[t,u]=i(e,s),o=(e+s)/2;t||u||!n||--c<0?l.push([e,s,t,u]):(a(e,o,n-1),a(o,s,n-1))},d=e.seen[s],h=d?.[0]===n&&d.at(-1)===t?d:[n,t];if(n<t)for(let e=1;e<h.length;e++)a(h[e-1],h[e],48);e.seen[s]??=[n,...l.map(([,e])=>e)];let g=r(n,0,l[0]);for(const[e,s,n,u]of[...l,[t,t,r(t,1,l.at(-1)),0]])if(!n&&u&&p*u>=0)p=u;else{if(!n&&e<s)return[null,e,s];if(e>f?!(g*n):g*n<0)return[null,f,e];g*n<0&&o.push([f,e,n]),[f,g,p]=[s,n,0]}return o}
