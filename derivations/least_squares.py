@@ -45,6 +45,8 @@ _PARTS = tuple(map(Rational, ("1", "2/5", "1/10", "1/50", "1/250")))
 """Of a step that is too long: with fewer of them some sets of NIST's need more passes than a workbook has."""
 _ROUNDING = Rational(1, 2**40)
 """By what part of itself a sum of squares may grow by rounding."""
+_NOTHING = Rational(1, 10**24)
+"""What a sum of squares may be by rounding alone, as a part of that of what was observed."""
 
 
 @dataclass(frozen=True)
@@ -351,7 +353,8 @@ class LeastSquares:
                 return self.total(left)
             return Sum(self.weighing.xreplace(moved) * left, (self.index, 1, self.size))
 
-        now = (1 + _ROUNDING) * self.total(self.residual**2)
+        # A model that goes through all rows leaves rounding only, which any step makes more or less.
+        now = (1 + _ROUNDING) * self.total(self.residual**2) + _NOTHING * self.total(self.observed**2)
         ways = [(part, squares(part) <= now) for part in _PARTS[:-1]]
         value = Piecewise(*ways, (_PARTS[-1], True))
         return self._helper("part", value, "part of the step that is taken", r"\lambda")

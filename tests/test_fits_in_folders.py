@@ -11,7 +11,9 @@ import pytest
 from test_fit import cells, write
 
 from loopsheet.derivations.equation import Kind
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
+from loopsheet.report.uncertainty.propagation import Spread
 
 PLACES = (
     "from loopsheet import Method, fit, let, mean, measured, unknown\nclass Places(Method):\n    'Places.'\n"
@@ -188,3 +190,60 @@ def test_sums_of_a_fit_that_lack_rows_are_told_by_what_they_lead_to(tmp_path: Pa
     assert over.startswith("4 of 5 ")
     assert {"a", "b", "f_s"} <= set(re.findall(r"\w+", told))
     assert not set(re.findall(r"\w+", told)) & report.workbook.aside
+
+
+THERMISTOR = """from sympy import exp
+from loopsheet import Method, fit, given, measured, unknown
+
+
+class Thermistor(Method, rows="points", headline="R_25 B"):
+    "A resistor that is measured at two temperatures."
+    theta = measured("degC", "temperature of the bath")
+    R = measured("kohm", "resistance", positive=True)
+    T_25 = given("degC", "reference", default="25 degC", exact=True)
+    R_25 = unknown("resistance there", "kohm", start=10)
+    B = unknown("constant", "K", start=3500)
+    line = fit(R, R_25 * exp(B * (1 / theta - 1 / T_25)), u="stated")
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [((0.0, 32.63), (40.0, 5.326)), ((0.0, 32.63), (25.0, 10.003)), ((10, 19.91), (60, 2.488))],
+)
+def test_a_curve_through_all_points_is_as_sure_as_they_are(
+    tmp_path: Path, first: tuple[float, float], second: tuple[float, float]
+) -> None:
+    """No step makes a sum of squares smaller that is rounding alone, and yet all of it is a step."""
+    rows = "theta [degC],R [kohm]\n" + "".join(f"{theta:.2f},{R!r}\n" for theta, R in (first, second))
+    write(
+        tmp_path, THERMISTOR, rows, '[uncertainty]\nR = "u = 0.1 % of reading"\ntheta = "U = 0.02 K, k = 2"\n'
+    )
+    study = Study(tmp_path)
+    T_1, T_2 = (theta + 273.15 for theta, _ in (first, second))
+    part = (1 / 298.15 - 1 / T_1) / (1 / T_2 - 1 / T_1)  # of the way from one to the other, in 1 / T
+    B = np.log(first[1] / second[1]) / (1 / T_1 - 1 / T_2)
+    value = 1e3 * first[1] ** (1 - part) * second[1] ** part
+    slopes = np.array([(1 - part), part, (1 - part) * B / T_1**2, part * B / T_2**2])
+    u = value * np.hypot.reduce(slopes * [1e-3, 1e-3, 0.01, 0.01])
+    (found,) = cells(study.computed.values, "R_25")
+    assert found == pytest.approx(value, rel=1e-12)
+    assert Spread(study.computed.inputs, study.computed.values).budget("R_25", 0).u == pytest.approx(
+        u, rel=1e-9
+    )
+    assert cells(study.computed.values, "line_part")[0] == 1
+
+
+@pytest.mark.parametrize("u", ["10", "0.1 * x / x", "0.1 * q", "{y: 0.002, x: 0.25}"])
+def test_a_standard_uncertainty_is_in_the_unit_of_what_it_belongs_to(tmp_path: Path, u: str) -> None:
+    """A plain number would be taken for metres, and the scatter for that of the rows."""
+    body = "    q = measured('1', 'share')\n    x = measured('mm', 'reference')\n"
+    body += "    y = measured('mm', 'reading')\n"
+    body += f"    a = unknown('zero', 'mm')\n    b = unknown('slope')\n    line = fit(y, a + b * x, u={u})\n"
+    rows = "x [mm],y [mm],q [1]\n0,0,1\n1,1.2,1\n2,1.9,1\n3,3.1,1\n"
+    write(tmp_path, PLACES + body, rows)
+    with pytest.raises(InputError, match=r"line: u of y is not in its unit, mm, .* u_y = given") as refused:
+        _ = Study(tmp_path).computed
+    assert "workbook.py:9:5" in str(refused.value)
+    write(tmp_path, PLACES + body.replace(f"u={u}", "u=0.1 * q * x"), rows)
+    assert np.isfinite(cells(Study(tmp_path).computed.values, "b")[0])

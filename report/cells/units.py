@@ -28,6 +28,7 @@ __all__ = [
     "check",
     "check_column",
     "dimension_of_unit",
+    "is_alike",
     "named_unit_of",
     "unit_of",
 ]
@@ -155,6 +156,12 @@ def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:
             column.rule.expression, f"its unit is {text_of(found)}; write it with names, N/m^alpha:"
         )
     return text_of(found).replace(" ", "*")
+
+
+def is_alike(columns: Mapping[str, Column], column: Column, expression: Expr) -> bool:
+    """Whether an expression is of the unit of a column, as its standard uncertainty is."""
+    own = dimension_of_unit(column.unit, exponents(columns, column, None))
+    return dict(_Checker(columns, column).of(expression)) == dict(own)
 
 
 def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:

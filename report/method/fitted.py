@@ -17,7 +17,7 @@ from ...derivations.reductions import Greatest, Least
 from ...derivations.unit_text import parse_open
 from ...derivations.vocabulary import spelt
 from ..axis import Axis, CountedAxis, GroupAxis, RepeatAxis
-from ..cells.units import named_unit_of
+from ..cells.units import is_alike, named_unit_of
 from ..charts import VERMILION, Chart, Series, drawn
 from ..column import Column, Formula, Given, Iterated, SheetError
 from ..messages.errors import sentence_case
@@ -97,6 +97,9 @@ class DeclaredFit:
         every = {each: known[name_of(each)] for each in u}
         stated = {each: stated_of(own) for each, own in every.items() if _is_stated(name, own, u[each])}
         others = {each: stated[each].cell if each in stated else size for each, size in u.items()}
+        for each, size in u.items():
+            if isinstance(size, Expr) and not size.free_symbols & sought.keys():
+                _refuse_unit(name, every[each], size, known)
         own_size = others.pop(observed)
         words = {each: said.meaning or str(each) for each, said in sought.items()}
         rows = f"of the {axis.size_name} {axis.name} of each {of.row}" if of else ""
@@ -285,6 +288,18 @@ def _refuse_errors(
     if observed not in u or (others and None in u.values()):
         names = " and ".join(name_of(each) for each in (observed, *others))
         raise SheetError(f"{name}: u says how uncertain {names} are, each of them", name)
+
+
+def _refuse_unit(name: str, own: Column, u: Expr, known: Mapping[str, Column]) -> None:
+    """Refuse a standard uncertainty in another unit than that of its column: a plain number has none."""
+    if is_alike(known, own, u):
+        return
+    raise SheetError(
+        f"{name}: u of {own.name} is not in its unit, {own.written}, as a standard uncertainty is: "
+        f"state it in the folder and write u='stated', or declare one, u_{own.name} = given('{own.written}', "
+        f"'standard uncertainty of {own.name}')",
+        name,
+    )
 
 
 def _refuse_curved(name: str, sought: Mapping[Symbol, Any], of: GroupAxis | None) -> None:

@@ -344,9 +344,9 @@ def fit(
         In names of the body and in those that are announced by :func:`unknown`. If it is linear in these,
         nothing is iterated; else each needs a start.
     u : Expr, ``"stated"`` or a mapping, optional
-        The standard uncertainties that rows are weighed by: a formula, or those that are stated of the
-        column. Without, all rows are alike. With ``u={y: 0.2, x: "stated"}`` x has errors, too, and
-        ``line.at_x`` is what it is on the model. Parameters then have the units that are announced.
+        The standard uncertainties that rows are weighed by: a formula in the unit of the column, or those
+        that are stated of it. Without, all rows are alike. With ``u={y: u_y, x: "stated"}`` x has errors,
+        too, and ``line.at_x`` is what it is on the model. Parameters then have the units that are announced.
     label : str
         The number of its equations, ``(H.13)``, which get letters.
     figures : bool
