@@ -160,3 +160,38 @@ def test_equal_readings_have_the_error_of_their_digits(made: Made, more: str) ->
     assert [(c.note, "all 5 readings are 5.00" in c.message) for c in found] == [("warning", True)] * (
         not more
     )
+
+
+WEIGHED = """from loopsheet import Method, given, let, mean, measured
+
+
+class Weighing(Method, rows="cycles", headline="dI m_T"):
+    "Substitution weighing."
+    A = measured("mg", "standard")
+    B = measured("mg", "test")
+    m_R = given("mg", "mass of the standard")
+    D_k = let(B - A, "difference of a cycle", "mg")
+    dI = let(mean(D_k), "mean difference", "mg")
+    m_T = let(m_R + dI, "mass of the test weight", "mg")
+"""
+
+
+@pytest.mark.parametrize(
+    ("rows", "odd"),
+    [("0.012,0.256\n0.010,0.254\n0.013,0.257\n", True), ("0.012,0.256\n0.010,0.251\n0.013,0.260\n", False)],
+)
+def test_what_readings_come_to_may_scatter_less_than_their_digits_leave(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: str, odd: bool
+) -> None:
+    """Each of them moves, and the difference stands still: its u is 0, and nobody has seen a microgram."""
+    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
+    (tmp_path / "m.csv").write_text(f"A [mg],B [mg]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[parameters]\nm_R = "100.000 mg, u = 0.015 mg"\n'
+    toml += '[measurements]\nfile = "m.csv"\n[uncertainty]\npaired = ["A", "B"]\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    left = 1e-9 * math.sqrt(2 / 3 / 12)  # a microgram in both, over three rows
+    found = Study(tmp_path).computed.uncertain().unresolved
+    assert found == ({("dI", 0): pytest.approx(left, rel=1e-9)} if odd else {})
+    main(["build", str(tmp_path)])
+    said = capsys.readouterr().out
+    assert ("mg): A and B scatter there by less than half of what their digits leave" in said) == odd

@@ -50,7 +50,12 @@ def read_paired(
     if wrong or len(written) < 2:
         reason = f"paired readings are two or more of {listing(columns)}"
         if not columns:
-            reason = "paired readings are of two columns or more with two rows or more, and there are none"
+            rows = (
+                "there is one row"
+                if any(numbers[name] for table in measured for name in table.measured)
+                else "there are none"
+            )
+            reason = f"paired readings are of two columns or more with two rows or more, and {rows}"
         elif wrong:
             odd = "is named twice" if wrong[0] in columns else "is no measured column with two rows or more"
             reason = f"paired readings: '{wrong[0]}' {odd}"

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..axis import GroupAxis, MemberAxis
+from ..axis import GroupAxis
 from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
-from ..distribution import SCATTER
 from ..messages.diagnostics import Check, Location
 from ..quantity import behind
 from ..result.chi_square import RARE, freedom, head, tail, tied
 from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
+from . import readings
 from .claims import CLAIM
 from .suspects import outliers, suspected
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["names", "oddities"]
 
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
-CONSTANTS, WORDS, SCATTERS = "constants", "words", "scatter"
+CONSTANTS, WORDS = "constants", "words"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT, PUBLISHED = "cells", "rows", "result", "published"
@@ -75,7 +75,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
-        SCATTERS: [*_unmoved(inputs), *(name for name, _ in _scattering(sheet, inputs))],
+        readings.SCATTERS: readings.names(sheet, inputs),
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -106,26 +106,6 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
         pairs = map(frozenset, combinations(sorted(own), 2))
         if any(pair not in map(frozenset, inputs.uncertainty.correlations) for pair in pairs):
             yield name, sorted(own)
-
-
-def _unmoved(inputs: Inputs) -> list[str]:
-    """The columns of which scatter alone is stated, and whose readings are all the same."""
-    return [
-        name
-        for name, stated in inputs.uncertainty.columns.items()
-        if [part.said for part in stated.parts] == [SCATTER]
-        and len({number.value for number in inputs.numbers(name)}) == 1
-    ]
-
-
-def _scattering(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, MemberAxis]]:
-    """The columns whose scatter is stated, with the groups of their rows, if these are of one kind."""
-    for name, stated in inputs.uncertainty.columns.items():
-        axis = sheet[name].axis if name in sheet else None
-        found = [*axis.grouped(sheet.axes)] if axis else []
-        scatters = name not in _unmoved(inputs) and any(part.said == SCATTER for part in stated.parts)
-        if len(found) == 1 and scatters:
-            yield name, found[0]
 
 
 def _of_misfit(known: Misfit) -> str:
@@ -173,8 +153,7 @@ class _Oddities:
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_words(table, each) for table in self.inputs.tables for each in table.table.groups)
         yield from map(self.of_taken, _taken(self.inputs))
-        yield from map(self.of_resolution, _unmoved(self.inputs))
-        yield from (self.of_scatter(*each) for each in _scattering(self.sheet, self.inputs))
+        yield from readings.checks(self.report)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
         yield from self.of_left_out()
@@ -496,31 +475,6 @@ class _Oddities:
         hint = ": columns of the same words in both say which is which" * taken.doubtful
         note = "warning" * taken.doubtful
         return Check(WORDS, column, True, f"{column}: {taken.told}{hint}", self.inputs.place, note=note)
-
-    def of_resolution(self, name: str) -> Check:
-        """Readings that are all the same: their scatter tells nothing, the digits of the instrument do."""
-        numbers = self.inputs.numbers(name)
-        said = f"{name}: all {len(numbers)} readings are {numbers[0].text}: their scatter is 0, and their "
-        said += f"digits leave more; say '{SCATTER}; +-0.5 digits rect', or what they share"
-        return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
-
-    def of_scatter(self, name: str, axis: MemberAxis) -> Check:
-        """Whether readings that stand in groups scatter about one mean as about those of their groups."""
-        layout = self.values.layouts[axis.name]
-        value = self.values.value[name][layout.rows[axis.of.index_name]]
-        groups = [own[np.isfinite(own)] for own in (value[rows] for rows in layout.groups)]
-        every, number = np.concatenate(groups), sum(own.size > 0 for own in groups)
-        dof, within = every.size - number, sum(own.size * float(np.var(own)) for own in groups if own.size)
-        whole = float(np.std(every, ddof=1)) if every.size > 1 else 0.0
-        about = f"about the mean of their own {axis.by}"
-        if whole**2 * dof <= REACH**2 * within:
-            said = f"{name}: {axis.of.name} scatter as much {about} as about that of all"
-            return Check(SCATTERS, name, True, said, self.inputs.place)
-        unit = behind(self.report.shown[name].unit)
-        size, own = (self.report.sure(name, each).text + unit for each in (whole, math.sqrt(within / dof)))
-        said = f"{name}: {SCATTER} is {size}, of all {axis.of.name} about one mean; "
-        said += f'{about} they scatter by {own}: "u = {own}, dof = {dof}" says so'
-        return Check(SCATTERS, name, True, said, self.inputs.place, note="warning")
 
     def numbered(self, table: Measurements, rows: Sequence[int]) -> str:
         """``run 2``, ``runs 1 and 3``."""

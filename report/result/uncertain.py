@@ -386,6 +386,9 @@ class Uncertainties:
     known."""
     rough: Mapping[str, bool] = field(default_factory=dict)
     """Columns of which derivatives jump: where rows change places (true), or at corners of a function."""
+    unresolved: Mapping[tuple[str, int], float] = field(default_factory=dict)
+    """What the digits of paired readings leave of cells of the headline (column, row), in SI, where these
+    scatter by far less."""
 
     @property
     def bent(self) -> dict[str, NDArray[np.bool_]]:

@@ -62,6 +62,8 @@ ROUNDED = 2.0**-52
 """Of a value: an uncertainty that is less may come from the rounding of a derivative that is 0."""
 ROUNDINGS = 2.0**10
 """It is at most so many times that, times what share of an input its uncertainty is."""
+LITTLE = 0.05
+"""Of a variance: what is less of it is not told apart."""
 MOST_ROWS = 1000
 """Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
 NOTHING = 1e-12
@@ -92,6 +94,7 @@ class Spread:
             rows = len(values.labels(column))
             numbers[column.name] = np.arange(size, size + rows)
             size += rows
+        self._numbers = numbers
         moves = [(n, *move) for n, source in enumerate(self.sources) for move in source.moves]
         self._by = np.array([numbers[name][row] for _, name, row, _ in moves], dtype=np.intp)
         self._u = np.array([u for *_, u in moves])
@@ -207,8 +210,9 @@ class Spread:
     def covariance(self, cells: Sequence[tuple[str, int]]) -> Array:
         """Variances and covariances of some cells (cells, cells)."""
         found = self.contributions(cells)
-        beside: Array = with_correlated(found, self._pairs)
-        return found @ beside.T
+        with np.errstate(all="ignore"):
+            beside: Array = with_correlated(found, self._pairs)
+            return found @ beside.T
 
     def _variance(self, found: Any) -> Array:
         """Of first order."""
@@ -288,6 +292,25 @@ class Spread:
         return Budget(
             self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
         )
+
+    def unresolved(self, name: str, row: int) -> float:
+        """What the digits of paired readings leave of a cell, in SI; 0 unless they scatter by less than half.
+
+        What is computed of readings in one row may not scatter at all, though each of them does. Where it is
+        little beside all else it is 0, too.
+        """
+        paired = self.inputs.uncertainty.paired
+        printed = {of: self.inputs.printed(of) for of in paired if of in self._numbers}
+        if not printed or name not in self._known:
+            return 0.0
+        (slopes,), (own,) = self._along.at([(name, row)]), self.contributions([(name, row)])
+        left = 0.0
+        for of, readings in printed.items():
+            steps = [0.0 if each is None else float(each.scale) * 10.0**-each.decimals for each in readings]
+            left += float(np.sum(np.square(slopes[self._numbers[of]] * steps))) / 12
+        theirs = [any(column in paired for column, *_ in source.moves) for source in self.sources]
+        scatter, every = self._variance(np.array([np.where(theirs, own, 0.0), own])).tolist()
+        return math.sqrt(left) if max(4 * scatter, LITTLE * every) < left < math.inf else 0.0
 
     def scattered(self, name: str, level: float) -> Scattered | None:
         """How uncertain a number is by the scatter of the rows that it was fitted to, if it was fitted."""
@@ -401,7 +424,9 @@ class Spread:
     def _misfit(self, residuals: Array, covariance: Array, moved: Array, fitted: int) -> Misfit | None:
         """`moved`: what every error does to what was observed, of shape (rows, errors)."""
         size = np.sqrt(self._variance(moved))
-        if not np.all(size > 0):
+        with np.errstate(all="ignore"):
+            known = np.all(size > 0) and np.isfinite(np.outer(size, size)).all()
+        if not known or not np.isfinite(covariance).all():
             return None
         chi2, dof = least_squares_of_errors(residuals, covariance, size, fitted)
         each = zip(moved, size.tolist(), strict=True)
@@ -492,4 +517,5 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         {name: second for name, (_, second) in variances.items()},
         {name: found for name, found in _misfits(spread, inputs.workbook) if found},
         spread.second.rough if spread.second else {},
+        {cell: left for cell in cells[:MOST_BUDGETS] if (left := spread.unresolved(*cell))},
     )
