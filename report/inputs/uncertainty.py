@@ -323,7 +323,7 @@ class _Reader:
 
     def groups_of(self, path: tuple[str, ...], of: Sequence[str]) -> tuple[tuple[int, ...], ...] | None:
         """The groups in the rows of columns, which have to be the same rows; None, with a finding, if not."""
-        why = next((f"{each} is one number" for each in of if self.rows[each] == 1), "")
+        why = next((f"{each} is one number" for each in of if each not in self.of_rows), "")
         if not why and len({id(self.of_rows[each]) for each in of}) > 1:
             why = f"{listing(of)} are of different rows"
         if why:

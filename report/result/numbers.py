@@ -38,6 +38,8 @@ _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
 _LEADING = 3
 """So are numbers with more zeros than this behind the decimal point."""
+_NOTHING = 1e-9
+"""Of its uncertainty: what is left of a difference of two numbers that are alike is not more."""
 _EXACTLY = Context(prec=800, rounding=ROUND_HALF_UP)
 _DOUBLE = 15
 """Digits that every double has."""
@@ -108,8 +110,9 @@ def last_place(value: float, u: float, digits: int, most: int = MOST) -> int:
     """The power of ten of the last digit that is shown of a number: the one rule that all views ask.
 
     It is that of the last digit of its uncertainty; a number that is less than that keeps one digit, for it
-    is not zero. Where nothing is known of an uncertainty, the number has so many significant digits, and an
-    integer part that is a little longer is written in full: a zero in place of a known digit would be wrong.
+    is not zero, unless it is so much less that it comes from rounding. Where nothing is known of an
+    uncertainty, the number has so many significant digits, and an integer part that is a little longer is
+    written in full: a zero in place of a known digit would be wrong.
     What is certain is written without idle zeros.
 
     Parameters
@@ -127,10 +130,11 @@ def last_place(value: float, u: float, digits: int, most: int = MOST) -> int:
     --------
     >>> last_place(1.30264, 0.0035015, 4), last_place(0.0034, 0.02, 4), last_place(50.0, 9.96, 4)
     (-4, -3, 0)
-    >>> last_place(12.5, 0.0, 4), last_place(12.5, math.nan, 4)
-    (-1, -2)
+    >>> last_place(12.5, 0.0, 4), last_place(12.5, math.nan, 4), last_place(3e-14, 0.25, 4)
+    (-1, -2, -2)
     """
     if 0 < u < math.inf:
+        value = value if abs(value) > _NOTHING * u else 0.0
         size = order(max(abs(value), u))
         return min(max(_told(u, most)[1], size - _DOUBLE + 1), order(value))  # a double has no more
     place = order(value) - digits + 1

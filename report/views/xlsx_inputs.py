@@ -23,6 +23,8 @@ _BELOW = 1000
 """Rows below the last one in which numbers are looked for that are in no formula."""
 _LONGEST = 255
 """Characters of a text in a formula; Excel takes no more."""
+_LARGEST = 1e90
+"""Of a larger number no cell holds the third power, times that of its row."""
 _SAME = 1e-12
 """How far, of the sum of its terms, a sum may be off by rounding: that of a thousand terms is off by less."""
 _ROWS_TOLD = FIRST_ROW - 5
@@ -192,6 +194,8 @@ class GivenCells:
         """
         place, printed = block.place, self.report.inputs.printed(block.name)
         issued = [_number(each, place) if each else 0.0 for each in printed]
+        if max(map(abs, issued), default=0.0) > _LARGEST:
+            return "FALSE"
         cells = self.grid[checked(block.name)].place.range(place.worksheet)
 
         def as_issued(power: int, at: Sequence[float], *beside: str) -> str:

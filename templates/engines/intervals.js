@@ -10,9 +10,9 @@ const ALL = [-Infinity, Infinity];
 const side = (low, high) => (low > 0 ? 1 : high < 0 ? -1 : 0);
 
 function out(low, high, places = 1) {
-  const by = places * Number.EPSILON;
-  low -= Math.abs(low) * by + Number.MIN_VALUE;
-  high += Math.abs(high) * by + Number.MIN_VALUE;
+  const by = places * Number.EPSILON, least = Number.MIN_VALUE;
+  low -= Math.abs(low) * by + least;
+  high += Math.abs(high) * by + least;
   const known = low <= high; // no number means that nothing is known
   up[0] = known ? high : Infinity;
   return known ? low : -Infinity;
@@ -33,7 +33,7 @@ function times(a, b, c, d) {
 }
 
 function power(a, b, n) {
-  const p = a ** Math.abs(n), q = b ** Math.abs(n);
+  const m = Math.abs(n), p = a ** m, q = b ** m;
   let c = out(Math.min(p, q), Math.max(p, q), 4);
   if (a >= 0 || !(n % 2)) c = a < 0 && b > 0 ? 0 : Math.max(c, 0); // rounding outwards takes none of these below zero
   if (n > 0) return c;
@@ -65,7 +65,7 @@ function sums(kept, count, terms) {
       all[2 * n + 1] += b;
       size[n] += Math.max(-a, b);
     }
-    rows += 1;
+    rows++;
   }
   for (let n = 0; n < count; n++) {
     const lost = rows * Number.EPSILON * size[n];

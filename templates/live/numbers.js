@@ -120,7 +120,9 @@ function told(u, most = 2) {
 // The power of ten of the last digit that is shown of a number: that of its uncertainty, if that is known; of what is
 // certain, without idle zeros; else the last of so many digits.
 function lastPlace(value, u, digits, most) {
-  if (u > 0 && u < Infinity) return Math.min(Math.max(told(u, most).place, order(Math.max(Math.abs(value), u)) - 14), order(value));
+  if (u > 0 && u < Infinity) {
+    return Math.min(Math.max(told(u, most).place, order(Math.max(Math.abs(value), u)) - 14), Math.abs(value) > 1e-9 * u ? order(value) : 0);
+  }
   let place = order(value) - digits + 1;
   if (u === 0) {
     const short = value ? significant(value, digits) : { digits: "", first: -1 };

@@ -101,7 +101,7 @@ class Trace {
     if (seen.includes(here)) return null;
     if (loop) seen.push(here);
     const wrong = this.wrong(name, row);
-    let found = wrong.length ? null : { name, row };
+    let found = wrong[0] ? null : { name, row };
     for (const { name: other, rows } of wrong) found ??= this.origin(other, rows[0], seen);
     return (known[row] = found);
   }
