@@ -164,7 +164,7 @@ def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('c = [let(2 * a, "in a list")]', "'in a list' has no name"),
         ('claim(a > 0, 1, "positive")', "a > 0 is no formula of real numbers; what is claimed is that two"),
         ('c = let(a / 2, "half"); claim(2 * c, a, "twice")', "'twice' is what (1) says of itself"),
-        ('a = given("m", "again")', "a is declared twice"),
+        ('a = given("m", "again")', "a is declared twice: it is the "),
         ('c = let(a + b, "of two kinds")', "cannot add m and s"),
         ('c = let(a + a, "length", "s")', "the unit is s, but the formula gives m"),
         ('c = let(a**b, "power")', "exponent"),

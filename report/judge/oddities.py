@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from pathlib import Path
@@ -106,6 +107,18 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
         pairs = map(frozenset, combinations(sorted(own), 2))
         if any(pair not in map(frozenset, inputs.uncertainty.correlations) for pair in pairs):
             yield name, sorted(own)
+
+
+def _foreign(word: str, other: str) -> str:
+    """The first letter of a word that another one has not, by its name, if it looks like one that it has.
+
+    >>> _foreign("\u04121", "B1"), _foreign("B1", "\u04121"), _foreign("CO", "Co")
+    (', with CYRILLIC CAPITAL LETTER VE', '', '')
+    """
+    odd = next(
+        (letter for letter in word if letter not in other and letter.isalpha() and not letter.isascii()), ""
+    )
+    return f", with {unicodedata.name(odd, f'U+{ord(odd):04X}')}" if odd else ""
 
 
 def _of_misfit(known: Misfit) -> str:
@@ -449,7 +462,8 @@ class _Oddities:
         if not found:
             return self.of_numbers(column)
         told = [
-            f"'{word}' ({self.numbered(table, rows)}) is nearly '{other}' ({self.numbered(table, others)})"
+            f"'{word}' ({self.numbered(table, rows)}{_foreign(word, other)}) is nearly '{other}' "
+            f"({self.numbered(table, others)}{_foreign(other, word)})"
             for _, word, rows, other, others, _ in found
         ]
         said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"

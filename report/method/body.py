@@ -386,7 +386,7 @@ class MethodBody(dict[str, Any]):
 
     def __setitem__(self, name: str, value: Any) -> None:
         if name in self.columns:
-            raise SheetError(f"{name} is declared twice", name)
+            raise SheetError(f"{name} is declared twice: it is the {self.columns[name].meaning}", name)
         self.unnamed = [said for said in self.unnamed if said is not value]
         begins = isinstance(value, InputLine) and value.is_measured
         has_rows = begins or any(isinstance(each, Measured) for each in self.inputs)
