@@ -285,6 +285,11 @@ def test_what_has_no_order_over_rows(formula: str, said: str) -> None:
         exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method.words)})
 
 
+def test_a_zero_with_a_point_is_a_number_that_every_double_holds() -> None:
+    names = vars(loopsheet.report.method.words)
+    exec("class Cut(Method):\n    x = given('1', 'share')\n    y = let(max(x, 0.0), 'cut')\n", {**names})
+
+
 @pytest.mark.parametrize(
     ("lines", "said"),
     [

@@ -294,9 +294,10 @@ def _refuse_unit(name: str, own: Column, u: Expr, known: Mapping[str, Column]) -
     """Refuse a standard uncertainty in another unit than that of its column: a plain number has none."""
     if is_alike(known, own, u):
         return
+    unit = own.unit if parse_open(own.written).zero else own.written  # differences have no zero
     raise SheetError(
-        f"{name}: u of {own.name} is not in its unit, {own.written}, as a standard uncertainty is: "
-        f"state it in the folder and write u='stated', or declare one, u_{own.name} = given('{own.written}', "
+        f"{name}: u of {own.name} is not in its unit, {unit}, as a standard uncertainty is: "
+        f"state it in the folder and write u='stated', or declare one, u_{own.name} = given('{unit}', "
         f"'standard uncertainty of {own.name}')",
         name,
     )

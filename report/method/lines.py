@@ -250,7 +250,7 @@ def exact(formula: Any) -> Expr:
         raise SheetError("a formula that divides by 0 has no value")
     if not isinstance(formula, Expr) or formula.has(ImaginaryUnit, Infinity, NegativeInfinity):
         raise SheetError(f"{formula} is no formula of real numbers")
-    if not all(_LEAST <= abs(number) <= _MOST for number in formula.atoms(Number) - {0}):
+    if not all(number.is_zero or _LEAST <= abs(number) <= _MOST for number in formula.atoms(Number)):
         raise SheetError("a number of the formula is beyond 1.8e308, or below 2.2e-308: no double holds it")
     for part in formula.atoms(Function):
         if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):
