@@ -160,8 +160,8 @@ def unit_of(sheet: Sheet | Mapping[str, Column], column: Column) -> str:
 
 def is_alike(columns: Mapping[str, Column], column: Column, expression: Expr) -> bool:
     """Whether an expression is of the unit of a column, as its standard uncertainty is."""
-    own = dimension_of_unit(column.unit, exponents(columns, column, None))
-    return dict(_Checker(columns, column).of(expression)) == dict(own)
+    checker = _Checker(columns, column)
+    return dict(checker.of(expression)) == dict(checker.of(column.cell))
 
 
 def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:

@@ -75,8 +75,8 @@ def interval(expression: Any, wide: Container[str]) -> Ends:
         above, below = str(expression.p), str(expression.q)
         return _call("times", above, above, *_call("power", below, below, "-1"))
     if isinstance(expression, Number) or expression == pi:
-        number = float(expression)
-        return _call("out", f"{number!r}, {number!r}")
+        number = repr(float(expression))
+        return _call("out", number, number)
     if isinstance(expression, (Add, Mul)):
         function = "plus" if isinstance(expression, Add) else "times"
         first, *others = sorted(interval(each, wide) for each in expression.args)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sympy import Expr, Float, Function, Integer, Number, Rational, sympify
+from sympy import Expr, Float, Function, Number, Rational, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 from sympy.core.relational import Relational
 
@@ -16,7 +16,7 @@ from ...derivations.reductions import Member
 from ...derivations.unit_text import ParsedUnit, UnitError, coherent, parse_open
 from ...derivations.vocabulary import Quantity, amiss
 from ..column import Limit, SheetError
-from ..quantity import Bounds, behind
+from ..quantity import LARGEST, SMALLEST, Bounds, behind
 
 __all__ = [
     "FUNCTIONS",
@@ -235,10 +235,6 @@ def spaced(first: Expr, last: Expr, place: Expr, number: Expr) -> Expr:
     return (first * (number - place) + last * (place - 1)) / (number - 1)
 
 
-_MOST, _LEAST = Integer(2) ** 1024 - 2**970, Rational(1, 2**1022)
-"""The largest double and the least one with all its digits."""
-
-
 def exact(formula: Any) -> Expr:
     """A formula with decimal fractions as they were typed: 0.27027... was 1/3.7, 0.30000000000000004 0.3."""
     if isinstance(formula, str):
@@ -250,7 +246,7 @@ def exact(formula: Any) -> Expr:
         raise SheetError("a formula that divides by 0 has no value")
     if not isinstance(formula, Expr) or formula.has(ImaginaryUnit, Infinity, NegativeInfinity):
         raise SheetError(f"{formula} is no formula of real numbers")
-    if not all(number.is_zero or _LEAST <= abs(number) <= _MOST for number in formula.atoms(Number)):
+    if not all(number.is_zero or SMALLEST <= abs(number) < LARGEST for number in formula.atoms(Number)):
         raise SheetError("a number of the formula is beyond 1.8e308, or below 2.2e-308: no double holds it")
     for part in formula.atoms(Function):
         if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):

@@ -41,7 +41,7 @@ from .coverage import assigned, coverage
 from .freedom import of_sum, with_correlated
 from .misfit import least_squares_of_errors
 from .monte_carlo import by_draws
-from .second_order import SecondOrder, root_of
+from .second_order import COUNTS, SecondOrder, root_of
 from .sources import correlated, given, sources
 
 __all__ = ["Spread", "uncertainties"]
@@ -62,8 +62,6 @@ ROUNDED = 2.0**-52
 """Of a value: an uncertainty that is less may come from the rounding of a derivative that is 0."""
 ROUNDINGS = 2.0**10
 """It is at most so many times that, times what share of an input its uncertainty is."""
-LITTLE = 0.05
-"""Of a variance: what is less of it is not told apart."""
 MOST_ROWS = 1000
 """Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
 NOTHING = 1e-12
@@ -306,11 +304,11 @@ class Spread:
         (slopes,), (own,) = self._along.at([(name, row)]), self.contributions([(name, row)])
         left = 0.0
         for of, readings in printed.items():
-            steps = [0.0 if each is None else float(each.scale) * 10.0**-each.decimals for each in readings]
-            left += float(np.sum(np.square(slopes[self._numbers[of]] * steps))) / 12
+            halves = [0.0 if each is None else float(each.half_unit) for each in readings]
+            left += float(np.sum(np.square(slopes[self._numbers[of]] * halves))) / 3  # rectangular
         theirs = [any(column in paired for column, *_ in source.moves) for source in self.sources]
         scatter, every = self._variance(np.array([np.where(theirs, own, 0.0), own])).tolist()
-        return math.sqrt(left) if max(4 * scatter, LITTLE * every) < left < math.inf else 0.0
+        return math.sqrt(left) if max(4 * scatter, COUNTS * every) < left < math.inf else 0.0
 
     def scattered(self, name: str, level: float) -> Scattered | None:
         """How uncertain a number is by the scatter of the rows that it was fitted to, if it was fitted."""
