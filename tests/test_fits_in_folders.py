@@ -234,6 +234,16 @@ def test_a_curve_through_all_points_is_as_sure_as_they_are(
     assert cells(study.computed.values, "line_part")[0] == 1
 
 
+@pytest.mark.parametrize("rows", ["1,21.521,-0.171\n2,23.999,-0.165\n", "1,1000.13,3.1\n2,1000.97,-2.22\n"])
+def test_a_line_through_two_points_leaves_nothing(tmp_path: Path, rows: str) -> None:
+    """What is left of u where all ways cancel is rounding."""
+    computed = in_folder(tmp_path, LINE, rows)
+    spread = Spread(computed.inputs, computed.values)
+    assert (spread.u("y") > 0).all()
+    assert spread.u("b")[0] > 0
+    assert (spread.u("f_residual") == 0).all()
+
+
 @pytest.mark.parametrize("u", ["10", "0.1 * x / x", "0.1 * q", "{y: 0.002, x: 0.25}"])
 def test_a_standard_uncertainty_is_in_the_unit_of_what_it_belongs_to(tmp_path: Path, u: str) -> None:
     """A plain number would be taken for metres, and the scatter for that of the rows."""

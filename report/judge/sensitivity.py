@@ -20,12 +20,20 @@ from ..plan.order import places
 from ..plan.slopes import NodeDerivatives, Slope
 from .chain import Chain, Numbered, SparseRows
 
-__all__ = ["ForwardSweep", "NumericSweep"]
+__all__ = ["ForwardSweep", "NumericSweep", "without_rounding"]
 
 Array = NDArray[np.float64]
 
 AT_ONCE = 1 << 22
 """Entries."""
+CANCELLED = 2.0**-42
+"""Of the terms of a sum: what is left of them where they cancel may be rounding."""
+
+
+def without_rounding(sums: Array, terms: Array) -> Array:
+    """Sums without those that are no more than the rounding of their terms, whose sizes are added up."""
+    left: Array = np.where(np.abs(sums) <= CANCELLED * terms, 0.0, sums)
+    return left
 
 
 class ForwardSweep:
@@ -149,7 +157,14 @@ class NumericSweep(ForwardSweep):
         float array (..., cells, sources)
             In SI; NaN for a cell without a value, and where nothing is known.
         """
-        found: Array = self.derivatives(self.chain.cells(cells), len(cells))
+        own = self.chain.cells(cells)
+        found: Array = self.derivatives(own, len(cells))
+        scalars, entries, first, rows = own.by_scalars(self.chain.number)
+        if rows.size:
+            with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+                terms = np.abs(self.entries[..., entries, None] * self.whole[..., scalars, :])
+                all_terms = np.add.reduceat(terms, first, axis=-2)
+            found[..., rows, :] = without_rounding(found[..., rows, :], all_terms)
         for n, odd in self.without_value(cells):
             found[..., n, :] = np.where(odd[..., None], np.nan, found[..., n, :])
         return found

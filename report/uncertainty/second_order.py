@@ -18,7 +18,7 @@ from ..cells.values import Values, other_rows
 from ..distribution import Shape
 from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
-from ..judge.sensitivity import NumericSweep
+from ..judge.sensitivity import NumericSweep, without_rounding
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Formula, Iterated, Sheet
 
@@ -175,7 +175,7 @@ class SecondOrder:
             terms that count come from a function with corners.
         """
         with np.errstate(all="ignore"):
-            used, up, down = self._nearby(cells)
+            used, up, down = self._nearby(cells, still=~first.any(axis=1))
             first = np.take_along_axis(first @ self.root, used, axis=1)
             fourth, third_moment = self.fourth[used][:, None, :], self.third[used][:, None, :]
             # [cell, i, j]: by error i and error j, and by i and twice by j
@@ -215,8 +215,15 @@ class SecondOrder:
         found: Array = np.sum(np.nan_to_num(off) ** 2, axis=(0, 2)) / FAR**4
         return found
 
-    def _nearby(self, cells: Sequence[tuple[str, int]]) -> tuple[NDArray[np.intp], Array, Array]:
+    def _nearby(
+        self, cells: Sequence[tuple[str, int]], still: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.intp], Array, Array]:
         """The independent errors that some cells rest on, and derivatives a step up and down along each.
+
+        Parameters
+        ----------
+        still : bool array (cells,)
+            Cells that do not change by first order: there the rounding of derivatives would be told.
 
         Returns
         -------
@@ -244,12 +251,14 @@ class SecondOrder:
         by_scalars = np.zeros((2 * half, len(cells), named.size))
         by_scalars[:, rows, which] = along.entries[:, at]
         through, cell = by_scalars @ self._through[:, named], np.arange(len(cells))[:, None, None]
+        terms = np.zeros_like(through)
+        terms[:, still] = np.abs(by_scalars[:, still]) @ np.abs(self._through[:, named])
 
         def beside(step: NDArray[np.intp]) -> Array:
             step = step[:, :, None]
             own = along.entries[step, entries[:, None, :]] @ weights
-            found: Array = own + through[step, cell, used[:, None, :]]
-            return found
+            place = step, cell, used[:, None, :]
+            return without_rounding(own + through[place], terms[place])
 
         up, down = beside(used), beside(half + used)
         for n, odd in along.without_value(cells):
