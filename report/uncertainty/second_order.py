@@ -175,7 +175,7 @@ class SecondOrder:
             terms that count come from a function with corners.
         """
         with np.errstate(all="ignore"):
-            used, up, down = self._nearby(cells, still=~first.any(axis=1))
+            used, up, down = self._nearby(cells, still=np.all(first == 0, axis=1))
             first = np.take_along_axis(first @ self.root, used, axis=1)
             fourth, third_moment = self.fourth[used][:, None, :], self.third[used][:, None, :]
             # [cell, i, j]: by error i and error j, and by i and twice by j
