@@ -303,6 +303,13 @@ def read(tmp_path: Path, more: str) -> Inputs:
         ("≥ -2 um", "at least -2 um"),
         ("1 .. 2 um", "1 to 2 um"),
         ("1 mm .. 2 cm", "1 mm to 2 cm"),
+        ("10.00 +- 0.10 mm", "9.90 to 10.10 mm"),
+        ("10 mm ± 50 um", "9.95 to 10.05 mm"),
+        ("10.0 mm +/- 0.10", "9.90 to 10.10 mm"),
+        ("-250 mm +- 2 %", "-255 to -245 mm"),
+        ("1.30+-0.05", "1.25 to 1.35"),
+        ("25 degC +- 0.5 K", "24.5 to 25.5 degC"),
+        ("25 +- 0.5 degC, guard = 0.1 K", "24.5 to 25.5 degC"),
     ],
 )
 def test_what_is_understood(tmp_path: Path, text: str, said: str) -> None:
@@ -345,6 +352,10 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
     [
         ('alpha_mean = "1.3"', "LS441", "1.3"),
         ('alpha_mean = "1.25 .. x"', "LS441", "x"),
+        ('alpha_mean = "1.30 +- 5 %"', "LS441", "1.30 +- 5 %"),
+        ('alpha_mean = "1.30 +- 0"', "LS441", "1.30 +- 0"),
+        ('alpha_mean = "1.30 +- x"', "LS441", "x"),
+        ('alpha_mean = "1 m +- 2 s"', "LS441", "1 m +- 2 s"),
         ('alpha_mean = "1.35 .. 1.25"', "LS441", "1.35 .. 1.25"),
         ('alpha_mean = "<= 1.25 furlung"', "LS441", "furlung"),
         ("alpha_mean = 1.3", "LS205", "1.3"),

@@ -4,6 +4,7 @@
 alpha_mean = "1.25 .. 1.35"              # or "<= 1.35", ">= 1.25"; with a unit where the cell has one
 x_p = "20 .. 45 um"                      # of every row that has none of its own
 "x_p[1]" = "22 .. 24 um"
+"x_p[3]" = "23 +- 1 um"                  # a nominal value and its tolerance; or 23 um +- 4 %
 "x_p[2]" = "22 .. 24 um, guard = 0.2 um" # a rule of its own
 
 [limits.rule]
@@ -16,6 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
@@ -41,6 +43,7 @@ __all__ = ["Guard", "Limits", "check_limits", "of_every_row", "read_limits"]
 SECTION, RULE = "limits", "rule"
 EXAMPLE = "1.25 .. 1.35"
 _BOTH = re.compile(r"(?P<low>.+?)\s*\.\.\s*(?P<high>.+)")
+_AROUND = re.compile(r"(?P<nominal>.+?)\s*(?:±|\+-|\+/-)\s*(?P<tolerance>.+)")
 _ONE = re.compile(r"(?P<sign><=|>=|≤|≥)\s*(?P<number>.+)")
 _OWN = re.compile(r",\s*(?P<key>[A-Za-z]\w*)\s*=\s*(?P<text>.*?)\s*(?=,\s*[A-Za-z]\w*\s*=|$)")
 """Behind limits, a part of a rule; a comma that no key follows belongs to what is before it."""
@@ -162,6 +165,8 @@ def _ends(text: str) -> tuple[Printed | None, Printed | None]:
     if one := _ONE.fullmatch(text):
         end = _number(one["number"], one.start("number"), "LS441")
         return (end, None) if one["sign"] in (">=", "≥") else (None, end)
+    if around := _AROUND.fullmatch(text):
+        return _around(around)
     both = _BOTH.fullmatch(text)
     if both is None:
         raise StatementError("LS441", text, 0)
@@ -171,6 +176,38 @@ def _ends(text: str) -> tuple[Printed | None, Printed | None]:
     if low.value >= high.value:
         raise StatementError("LS441", text, 0, "the lower one stands first")
     return low, high
+
+
+def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
+    """The ends of a nominal value and its tolerance, in the unit of the nominal value."""
+    tolerance = _width(text["tolerance"], text.start("tolerance"), "LS441")
+    is_share = tolerance.unit == "%"
+    unit = "" if " " in text["nominal"] or is_share else tolerance.unit  # a unit behind both is that of both
+    nominal = _number(f"{text['nominal']} {unit}".strip(), 0, "LS441")
+    known = parse_open(nominal.unit)
+    if is_share and nominal.unit == "1":
+        raise StatementError("LS441", text[0], 0, "the tolerance of a pure number is one: 1.30 +- 0.05")
+    if tolerance.unit == "1" and nominal.unit != "1":
+        width = tolerance.number
+    elif is_share and nominal.unit != "%":
+        width = abs(nominal.number) * tolerance.value
+    elif (own := parse_open(tolerance.unit)).dimension == known.dimension and own.open == known.open:
+        width = tolerance.value / nominal.scale
+    else:
+        raise StatementError("LS441", text[0], 0, f"{tolerance.unit} is no unit of what is in {nominal.unit}")
+    if width <= 0:
+        raise StatementError("LS441", text[0], 0, "a tolerance is greater than 0")
+    places = max(nominal.decimals, tolerance.decimals, 0)
+    ends = nominal.number - width, nominal.number + width
+    low, high = (read_printed(_decimal(end, places), known) for end in ends)
+    return low, high
+
+
+def _decimal(number: Fraction, places: int) -> str:
+    """In decimal digits, at least so many of them behind the point, and at most fifteen in all."""
+    with localcontext(prec=15):
+        exact = Decimal(number.numerator) / Decimal(number.denominator)
+    return f"{exact:.{places}f}" if exact == round(exact, places) else f"{exact:f}"
 
 
 def _number(text: str, start: int, code: str) -> Printed:
@@ -211,7 +248,7 @@ def _with(rule: Guard, key: str, text: str, at: Location) -> Guard:
 def _guard(rule: Guard, text: str, at: Location) -> Guard:
     share = _SHARE.fullmatch(text)
     if share is None:
-        width = _width(text)
+        width = _width(text, 0, "LS442")
         if width.value < 0:
             raise StatementError("LS442", text, 0, "a guard band is 0 or more wide")
         return replace(rule, times=Fraction(0), width=width if width.value else None, at=at)
@@ -219,9 +256,9 @@ def _guard(rule: Guard, text: str, at: Location) -> Guard:
     return replace(rule, times=times, width=None, at=at)
 
 
-def _width(text: str) -> Printed:
+def _width(text: str, start: int, code: str) -> Printed:
     """A difference: of a unit with a zero of its own its size alone counts."""
-    number = _number(text, 0, "LS442")
+    number = _number(text, start, code)
     return replace(number, value=number.value - number.zero, zero=Fraction(0))
 
 

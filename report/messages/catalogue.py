@@ -324,7 +324,7 @@ CATALOGUE: dict[str, Entry] = {
     "LS441": Entry(
         "not limits",
         "'{text}' is not understood as limits",
-        "1.25 .. 1.35, <= 1.35 or >= 1.25, with a unit where the cell has one: 22 .. 24 um",
+        "1.25 .. 1.35, 1.30 +- 0.05, <= 1.35 or >= 1.25, with a unit where the cell has one: 22 .. 24 um",
         "{suggestion}",
     ),
     "LS442": Entry(
