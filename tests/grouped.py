@@ -42,7 +42,7 @@ class Variance(Method, source="ISO 5725-2", headline="between within F R2 s apar
 RATES = """
 from loopsheet import Method, fit, groups, let, measured, unknown
 
-class Rates(Method, headline="spread"):
+class Rates(Method, headline="spread b"):
     "Rates over two catalysts."
     x = measured("1", "inverse temperature")
     y = measured("1", "logarithm of the rate")

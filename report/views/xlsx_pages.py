@@ -15,11 +15,13 @@ from ..result.statements import statements
 from .json import proof_grounds, proof_statuses
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE, counted
-from .xlsx_style import Style, height
+from .xlsx_style import Style, height, number_format
 from .xlsx_tables import mark_errors, write_block
 
 __all__ = ["write_equations", "write_published", "write_report"]
 
+MOST_ROWS = 50
+"""Of a result that stands on a worksheet of rows; of more, nobody reads them twice."""
 
 # --- the result and the scalars -----------------------------------------------------------------------------
 
@@ -40,6 +42,7 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: G
         for block in group:
             row = block.place.row
             _write_scalar(sheet, style, report, grid, block, inputs)
+    row = _write_results_in_rows(sheet, style, report, grid, row)
     _write_notes(sheet, style, report, grid, row + 2)
     for column in (1, CHECKED, CHECKED + 1):
         mark_errors(sheet, style, 0, column, row, column)
@@ -86,6 +89,24 @@ def _write_scalar(
         style.formula(sheet, row, 6, formula, value, style("text"), array=True)
 
 
+def _write_results_in_rows(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> int:
+    """Show the results that other worksheets compute, one for each group, say; return the row of the last one."""
+    named = [report.sheet[name] for name in report.workbook.headline if name in report.sheet]
+    for column in named:
+        if column.axis is None or grid[column.name].place.rows > MOST_ROWS:
+            continue
+        block, row = grid[column.name], row + 2
+        style.section(sheet, row, f"Result: {block.meaning}", 7)
+        for own, figure in enumerate(report.figures(column.name)):
+            row += 1
+            style.text(sheet, row, 0, report.values.address(column.name, own), "name")
+            form = style("result", number_format(figure))
+            style.formula(sheet, row, 1, f"={block.place.cell(own)}", block.values[own], form)
+            style.text(sheet, row, 2, block.unit, "unit")
+            style.text(sheet, row, 4, column.source, "text")
+    return row
+
+
 def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> None:
     given = list(
         dict.fromkeys(b.place.worksheet for b in grid.blocks if b.kind == "given" and b.name in report.sheet)
@@ -121,7 +142,7 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "groups, limits and shared errors go by the rows as issued. One with another number, name or group "
         "is told in the column check"
         + (", and nothing is computed from one of another group." if grid.groups else "."),
-        f"Source: {report.workbook.source}.",
+        *([f"Source: {report.workbook.source}."] if report.workbook.source else []),
         "Computed with " + ", ".join(f"{name} {version}" for name, version in report.versions.items()) + ".",
     ]
     known = [f"{name}: {said}." for name, said in statements(report)]

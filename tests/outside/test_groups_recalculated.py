@@ -46,6 +46,11 @@ def test_an_edited_workbook_fits_each_group_again(
     found = spreadsheets.compare(delivered, values, read["edited"])
     assert (found.wrong, found.cells > 60) == ([], True)
     assert spreadsheets.compare(delivered, delivered.values({}), read["edited"]).wrong
+    # A result of each group stands on the first worksheet, too, where it follows.
+    first = read["edited"]["report"]
+    told = [first[f"B{at[1:]}"] for at, text in first.items() if str(text).startswith("b[")]
+    assert told == [pytest.approx(cell.value, rel=1e-12) for cell in values.cells("b")]
+    assert len(told) > 1
 
 
 def test_a_row_of_another_group_is_told_and_in_no_sum(
