@@ -20,7 +20,8 @@ from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import live, live_uncertain
 
-SCRIPTS = (*live.ALONE, "numbers.js", "inputs.js", "trace.js", "coverage.js", "sure.js", "cells.js")
+SCRIPTS = (*live.ALONE, "numbers.js", "inputs.js", "trace.js", "coverage.js")
+SCRIPTS += ("readings.js", "sure.js", "cells.js")
 HARNESS = """
 const tables = Object.fromEntries(Object.entries(LIVE.tables).map(([axis, { rows }]) => [axis, rows]));
 const state = { tables, parameters: { ...LIVE.parameters, ...EDITS } };

@@ -30,12 +30,15 @@ from loopsheet.report.uncertainty.propagation import Spread
 from loopsheet.report.views import live
 from loopsheet.report.views.writer import TEMPLATES
 
-SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "sensitivities.js", "coverage.js", "sure.js", "cells.js")
+SCRIPTS = ("numbers.js", "inputs.js", "trace.js", "sensitivities.js", "coverage.js", "readings.js", "sure.js")
+SCRIPTS += ("cells.js",)
 HARNESS = """
 const tables = Object.fromEntries(Object.entries(LIVE.tables).map(([axis, { rows }]) => [axis, rows]));
 const state = { tables, parameters: LIVE.parameters };
 for (const [name, label, text] of EDITS) {
-  if (label) Object.values(tables)[0].find((test) => test.label === label).cells[name] = text;
+  const test = Object.values(tables)[0].find((one) => one.label === label);
+  if (label && !text) test.used = false;
+  else if (label) test.cells[name] = text;
   else state.parameters[name] = text;
 }
 const trace = new Trace(PROGRAM, LIVE.columns, computeSheet(PROGRAM, LIVE.columns, state));
@@ -229,6 +232,65 @@ def test_an_edit_is_a_rebuild(told: Told, tmp_path: Path, edits: Edits) -> None:
         reports.append(Study(folder).computed)
     issued, rebuilt = reports
     agrees(told(issued, edits), rebuilt, issued)
+
+
+PIPETTE = """from loopsheet import Method, given, let, mean, measured
+
+
+class Pipette(Method, rows="deliveries", headline="V"):
+    "A pipette by weighing."
+    m = measured("mg", "mass of a delivery")
+    rho = given("kg/m^3", "density of the water", default="997.5(2) kg/m^3")
+    V = let(mean(m) / rho, "mean volume", "uL")
+"""
+READINGS = {
+    "paired": ("", [("V", 2, "4.99"), ("I", 5, "19.7")]),
+    "paired, one left out": ("", [("V", 3, ""), ("phi", 1, "1.05")]),
+    "paired, one that stands still": ("", [("V", row, "5.000") for row in range(1, 6)]),
+    "scatter": ("scatter", [("m", 2, "1003.1")]),
+    "scatter, one left out": ("scatter", [("m", 4, "")]),
+    "scatter and a resolution": ("scatter; 1 digit", [("m", 2, "1003.1"), ("rho", 0, "990.0")]),
+    "scatter of none": ("scatter", [("m", row, "998.0") for row in range(1, 5)]),
+    "scatter of none and a resolution": ("scatter; 1 digit", [("m", row, "998.0") for row in range(1, 5)]),
+}
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_how_readings_scatter_follows_an_edit(told: Told, tmp_path: Path, name: str) -> None:
+    """With its degrees of freedom, and how readings that were taken together are correlated."""
+    stated, edits = READINGS[name]
+    folders = tmp_path / "issued", tmp_path / "edited"
+    for folder in folders:
+        if not stated:
+            copytree(PAPER.parent / "gum_h2", folder, ignore=lambda *_: ["out", "published.csv"])
+            toml = (folder / "report.toml").read_text(encoding="utf-8").partition("[published]")[0]
+        else:
+            folder.mkdir()
+            (folder / "workbook.py").write_text(PIPETTE, encoding="utf-8")
+            rows = "delivery,m [mg]\n1,998.1\n2,999.4\n3,997.2\n4,998.8\n"
+            (folder / "measurements.csv").write_text(rows, encoding="utf-8")
+            toml = 'workbook = "workbook.py"\n[parameters]\nrho = "997.5(2) kg/m^3"\n[measurements]\n'
+            toml += f'file = "measurements.csv"\n[uncertainty]\nm = "{stated}"\n'
+        (folder / "report.toml").write_text(toml, encoding="utf-8")
+    for column, row, text in edits:
+        place = folders[1] / ("measurements.csv" if row else "report.toml")
+        lines = place.read_text(encoding="utf-8").splitlines()
+        if row and text:
+            at = [head.partition(" ")[0] for head in lines[0].split(",")].index(column)
+            lines[row] = ",".join([*lines[row].split(",")[:at], text, *lines[row].split(",")[at + 1 :]])
+        elif row:
+            lines[row] = ""
+        else:
+            lines = [line.replace('rho = "997.5', f'rho = "{text}') for line in lines]
+        place.write_text("\n".join(line for line in lines if line) + "\n", encoding="utf-8")
+    issued, rebuilt = (Study(folder).computed for folder in folders)
+    found, spread = told(issued, edits), Spread(rebuilt.inputs, rebuilt.values)
+    (name, *_) = rebuilt.workbook.headline
+    assert issued.uncertain().u[name][0] != pytest.approx(rebuilt.uncertain().u[name][0], rel=0.01)
+    agrees(found, rebuilt, issued)
+    for headline in rebuilt.workbook.headline:
+        budget = spread.budget(headline, 0)
+        assert found["cells"][headline]["factor"] == pytest.approx(budget.factor, rel=1e-3)
 
 
 @pytest.mark.parametrize(

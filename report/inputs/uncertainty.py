@@ -98,12 +98,9 @@ class Stated:
             for name, column in numbers.items()
         }
 
-    @property
-    def of_readings(self) -> bool:
-        """Whether anything follows from how the numbers of a column scatter, all of them together."""
-        return bool(self.paired) or any(
-            p.said == SCATTER for each in self.columns.values() for p in each.parts
-        )
+    def is_of_readings(self, name: str) -> bool:
+        """Whether what is stated of a column follows from how its numbers scatter, all of them together."""
+        return name in self.columns and any(part.said == SCATTER for part in self.columns[name].parts)
 
     @staticmethod
     def again(said: str, unit: str, shape: Shape) -> StatedErrors | None:

@@ -23,6 +23,7 @@ from . import live
 from .compact import short_markup, short_style
 from .escape import Markup, html
 from .issued import Issued
+from .live_uncertain import scatters
 from .mathml import mathml, mathml_block
 from .typeset import block
 from .units import unit_html
@@ -195,7 +196,8 @@ def write(made: Issued, stage: Path) -> None:
 
 
 def _script(report: Report, program: str) -> str:
-    return live.script(program, _text("minified/runtime.js"), bool(report.workbook.charts))
+    drawings, runtime = bool(report.workbook.charts), _text("minified/runtime.js")
+    return live.script(program, runtime, drawings, scatters(report))
 
 
 _BETWEEN = re.compile(

@@ -47,6 +47,7 @@ SCRIPTS = (
     "inputs.js",
     "trace.js",
     "coverage.js",
+    "readings.js",
     "sure.js",
     "cells.js",
     "tables.js",
@@ -68,12 +69,14 @@ SCRIPTS = (
 
 DRAWING = frozenset({"drawing.js", "charts.js"})
 """The scripts that only a page with charts has."""
+READINGS = "readings.js"
+"""The script that only a page has in which readings scatter."""
 
 
 # --- the script ------------------------------------------------------------------------------------------
 
 
-def script(program: str, runtime: str, drawings: bool = True) -> str:
+def script(program: str, runtime: str, drawings: bool = True, readings: bool = False) -> str:
     """The script of the page, with the generated program in it.
 
     Parameters
@@ -84,13 +87,16 @@ def script(program: str, runtime: str, drawings: bool = True) -> str:
         What evaluates it.
     drawings : bool
         Whether a chart is in the page.
+    readings : bool
+        Whether readings scatter in it.
 
     Raises
     ------
     ValueError
         The text would end the element that it stands in.
     """
-    names = [name for name in SCRIPTS if drawings or name not in DRAWING]
+    spare = (frozenset() if drawings else DRAWING) | (set() if readings else {READINGS})
+    names = [name for name in SCRIPTS if name not in spare]
     own = [(TEMPLATES / "minified" / name).read_text(encoding="utf-8") for name in names]
     own.insert(len(ALONE), "if(!self.document)return;\n")
     short: str = kept("program of the page", [program], lambda: short_cells(short_script(program)))

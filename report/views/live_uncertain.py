@@ -8,13 +8,13 @@ from typing import Any
 
 from ..cells.address import index_text
 from ..cells.layout import how_large
-from ..distribution import DIVISORS, Error, Shape
+from ..distribution import DIVISORS, SCATTER, Error, Shape
 from ..quantity import Printed, there
 from ..result.numbers import order
 from ..result.result import Report
 from ..sheet import Column, RepeatAxis
 
-__all__ = ["digits", "errors", "follows", "uncertain"]
+__all__ = ["digits", "errors", "follows", "scatters", "uncertain"]
 
 FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE})
 """The shapes that a width tells whole."""
@@ -25,16 +25,23 @@ LARGEST = 4_000_000
 def follows(report: Report) -> bool:
     """Whether the uncertainties of the page follow its edits.
 
-    Those of readings do not, which follow from how all of them scatter together, nor those of numbers with a
-    law of their own or from another report.
+    Those of numbers with a law of their own or from another report do not, nor does a column of the sheet
+    that is made of how readings scatter.
     """
     stated, sheet = report.inputs.uncertainty, report.sheet
     told = [part.shape for each in stated.columns.values() for part in each.parts]
     numbers = [number for c in sheet.columns for number in there(report.printed(c.name))]
     told += [error.shape for number in numbers for error in number.stated or ()]
     told += [p.shape for each in stated.shared for said in each.statements.values() for p in said.parts]
-    known = not (stated.of_readings or report.inputs.taken) and FOLLOWED.issuperset(told)
+    weighs = any(stated.is_of_readings(of) for of in sheet.weighed.values())
+    known = not (weighs or report.inputs.taken) and FOLLOWED.issuperset(told)
     return known and len(numbers) * how_large(sheet, report.values.layouts) <= LARGEST
+
+
+def scatters(report: Report) -> bool:
+    """Whether the page follows how readings scatter."""
+    stated = report.inputs.uncertainty
+    return follows(report) and any(map(stated.is_of_readings, stated.columns))
 
 
 def uncertain(report: Report) -> dict[str, Any]:
@@ -53,10 +60,10 @@ def uncertain(report: Report) -> dict[str, Any]:
         "correlated": [
             [one, other, r]
             for (one, other), r in stated.correlations.items()
-            if one in report.sheet and other in report.sheet
+            if one in report.sheet and other in report.sheet and not {one, other} <= {*stated.paired}
         ],
         "most": stated.digits,
-    }
+    } | ({"paired": [*stated.paired]} if scatters(report) else {})
 
 
 def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
@@ -67,7 +74,8 @@ def errors(report: Report, column: Column) -> list[Any] | dict[str, Any] | None:
     """
     said = report.inputs.uncertainty.columns.get(column.name)
     if said is not None and FOLLOWED.issuperset(part.shape for part in said.parts):
-        return _stated(said, column.name)
+        paired = report.inputs.uncertainty.paired
+        return _stated(said, ", ".join(paired) if column.name in paired else column.name)
     printed = report.inputs.printed(column.name)
     own = report.inputs.own_u(column.name) if column.name in report.inputs.taken and column.axis else None
     found = {
@@ -122,6 +130,9 @@ def _stated(said: Any, sample: str) -> list[dict[str, Any]]:
     """What is stated of a column, part by part: a size, shares of the value, units of the last digit."""
     found = []
     for n, part in enumerate(said.parts):
+        if part.said == SCATTER:  # how large it is, and with how many degrees of freedom, the page finds
+            found.append({"scatter": True, **_kind(Shape.STUDENT, 1, SCATTER, f"{sample} {n}")})
+            continue
         by = float(part.divisor) * DIVISORS[part.shape]
         sizes = {"u": part.absolute, "share": part.relative, "digits": part.digits}
         told: dict[str, Any] = {name: float(size) / by for name, size in sizes.items() if size}

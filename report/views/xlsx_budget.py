@@ -15,7 +15,7 @@ from decimal import Decimal
 from functools import cached_property
 from typing import Any
 
-from ..cells.grid import LONGEST, CellBlock, Grid, Product, checked, factors
+from ..cells.grid import LONGEST, CellBlock, Grid, Product, checked, factors, letters
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import rounded
@@ -40,6 +40,10 @@ _COLUMNS = (
 )
 _NONE = 1e-12
 """Of an uncertainty, what is left of it besides a share is this small where nothing is."""
+_AS_ISSUED = 11
+"""The column, from 0, that names the inputs where sensitivities are numbers."""
+_SAME = 1e-12
+"""Of a sum: what is left of it where it is as issued."""
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
@@ -60,23 +64,58 @@ _FACTORS = {
 def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write the budgets of the results, one below the other."""
     said = "Estimates follow the sheet; yellow cells may be changed."
-    if not all(grid.slopes.get(budget.name) for budget in report.uncertain().budgets if budget.u > 0):
-        said += " Sensitivities that are numbers stay as issued."
-    widths = (width for _, width in _COLUMNS)
+    budgets = [each for each in report.uncertain().budgets if each.is_known and each.u > 0]
+    fixed = any(_Written(sheet, style, report, grid, each, 0, "").is_fixed for each in budgets)
+    if fixed:
+        said += " Sensitivities without a formula are told of the inputs as issued, and of no others."
+    widths = (width for _, width in (*_COLUMNS, *[("", 12)] * (_AS_ISSUED - len(_COLUMNS) + 2)))
     style.page(sheet, "uncertainty: where that of the results comes from", said, widths)
-    row = 3
-    for budget in report.uncertain().budgets:
-        if budget.is_known and budget.u > 0:
-            row = _Written(sheet, style, report, grid, budget, row).write() + 2
+    issued, row = _write_as_issued(sheet, style, report, grid) if fixed else "TRUE", 3
+    for budget in budgets:
+        row = _Written(sheet, style, report, grid, budget, row, issued).write() + 2
     sheet.freeze_panes(3, 1)
+
+
+def _write_as_issued(sheet: Any, style: Style, report: Report, grid: Grid) -> str:
+    """Write which inputs are as issued, one below the other; return the formula that says whether all are.
+
+    A column is, where sums of its numbers are, each times what no numbers that are typed cancel.
+    """
+    style.text(sheet, 3, _AS_ISSUED, "inputs", "head")
+    style.text(sheet, 3, _AS_ISSUED + 1, "are as issued", "head")
+    given = [block for block in grid.blocks if block.kind == "checked" and block.of in report.sheet]
+    for row, block in enumerate(given, start=4):
+        place, status = block.place, report.values.status[block.of]
+        cells, rows = place.range(), range(place.row + 1, place.row + place.rows + 1)
+        numbers = [
+            0.0 if bad else place.of(x) for x, bad in zip(report.values.value[block.of], status, strict=True)
+        ]
+        same = []
+        for formula, weigh in ("SQRT(ROW({}))", math.sqrt), ("LN(ROW({}))", math.log):
+            terms = [weigh(at) * number for at, number in zip(rows, numbers, strict=True)]
+            told = f"SUMPRODUCT({formula.format(cells)},{cells})"
+            same.append(f"ABS({told}-({math.fsum(terms)!r}))<={_SAME * math.fsum(map(abs, terms))!r}")
+        style.text(sheet, row, _AS_ISSUED, block.of, "name")
+        style.formula(sheet, row, _AS_ISSUED + 1, f"=AND({','.join(same)})", True, style("text"))
+    column = letters(_AS_ISSUED + 1)
+    return f"AND(${column}$5:${column}${4 + len(given)})"
 
 
 class _Written:
     """One budget."""
 
     def __init__(
-        self, sheet: Any, style: Style, report: Report, grid: Grid, budget: Budget, row: int
+        self,
+        sheet: Any,
+        style: Style,
+        report: Report,
+        grid: Grid,
+        budget: Budget,
+        row: int,
+        issued: str,
     ) -> None:
+        self.issued = issued
+        """The formula that says whether the inputs are as issued."""
         self.sheet, self.style, self.report, self.grid, self.budget = sheet, style, report, grid, budget
         self.block: CellBlock = grid[budget.name]
         self.scale = float(self.block.place.scale)
@@ -103,6 +142,11 @@ class _Written:
             self.sheet.conditional_format(self.first, 8, self.last, 8, _BARS)
         return self.result(self.last + 1)
 
+    @property
+    def is_fixed(self) -> bool:
+        """Whether a sensitivity has no formula."""
+        return not all(self.slope(each.source) for each in self.budget.contributions)
+
     def source(self, row: int, each: Contribution) -> None:
         """A line: what it is, and what it does."""
         source, style, sheet, report = each.source, self.style, self.sheet, self.report
@@ -125,14 +169,13 @@ class _Written:
             u = source.u / scale
             self.number(row, 3, size, u, number_format(report.sure(name, source.u)))
             form = style("number", number_format(rounded(contribution / u, 4)))
-            if slope := self.slope(source):
-                style.formula(sheet, row, 6, slope, contribution / u, form)
-            else:
-                sheet.write_number(row, 6, contribution / u, form)
+            slope = self.slope(source) or f"=IF({self.issued},{contribution / u!r},NA())"
+            style.formula(sheet, row, 6, slope, contribution / u, form)
             form = number_format(rounded(contribution, 3))
             style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
-            self.number(row, 7, self.slope(source), contribution, number_format(rounded(contribution, 3)))
+            slope = self.slope(source) or f"=IF({self.issued},{contribution!r},NA())"
+            self.number(row, 7, slope, contribution, number_format(rounded(contribution, 3)))
         formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
@@ -252,7 +295,7 @@ class _Written:
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={cell}", value, shown),
             ("standard uncertainty u", f"=SQRT(MAX(0,{first}+{at['second']}))", u, self.form(budget.u)),
-            ("variance of second order", "", second, of_second),
+            ("variance of second order", self.second_order(first), second, of_second),
             ("largest contribution", f"=MAX(MAX({own}),-MIN({own}))", largest, of_largest),
             ("all others together", f"=SQRT(MAX(0,{lost})+ABS({at['second']}))", others, of_largest),
             ("effective degrees of freedom", *free, _DOF),
@@ -278,6 +321,11 @@ class _Written:
             self.style.text(self.sheet, row, 0, budget.advice)
             row += 1
         return self.limits(row, own, at)
+
+    def second_order(self, first: str) -> str:
+        """The formula of what is taken from the variance, if it is that: as much of it as was issued."""
+        second, u = self.budget.second, self.budget.u
+        return f"=-({first})*{-second / (u * u - second)!r}" if second < 0 else ""
 
     def unmoved(self, at: Mapping[str, str]) -> str:
         """Whether the sources are as issued: the fourth powers of their shares, shape by shape.

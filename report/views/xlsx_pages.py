@@ -90,7 +90,7 @@ def _write_scalar(
 
 
 def _write_results_in_rows(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> int:
-    """Show the results that other worksheets compute, one for each group, say; return the row of the last one."""
+    """Show results that other worksheets compute, one for each group, say; return the last row."""
     named = [report.sheet[name] for name in report.workbook.headline if name in report.sheet]
     for column in named:
         if column.axis is None or grid[column.name].place.rows > MOST_ROWS:

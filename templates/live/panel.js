@@ -77,6 +77,9 @@ function makeAround() {
   });
   for (const list of all("main .decided")) parts.push([list, "decision"]);
   for (const legend of all("main .legend")) if (legend.textContent.includes("Stated uncertainties:")) parts.push([legend, "list of stated uncertainties"]);
+  const left = LIVE.shared ? [] : all(".headline .sure");
+  for (const u of left) u.classList.add("decided");
+  if (left[0]) parts.push([left[0].closest(".headline"), "expanded uncertainty"]);
   if (LIVE.shared) for (const first of all(".headline, #uncertain > :first-child")) parts.push([first]);
   page.stale = parts.map(([place, what]) => {
     const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "This browser tells U by first order alone: a build says where the second counts.");

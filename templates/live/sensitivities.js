@@ -5,6 +5,7 @@ const MOVE = 2 ** -10; // in standard uncertainties, to both sides: far enough f
 const BENT = 2 ** -20; // of the change to both sides together: what those to either side may differ by where it is straight
 const LEAST = 2 ** -32; // of a cell: no step is shorter
 const NEAR = 2 ** -17; // of a root: so far from it its form is asked for its slope
+const LEFT = 2 ** -30; // of the steps of all ways to a cell: what is left of an effect where they cancel is rounding
 const STILL = 2 ** -30; // of the largest effect: what moves no more is settled, as far as slopes are known
 const MOST_PASSES = 60; // of columns that rest on one another
 
@@ -16,10 +17,10 @@ function sensitivities(columns, sheet, errors) {
   const again = (column) => {
     const { name, refs, jumps } = column, others = new Set(refs.map(([other]) => other).filter((other) => found[other] && !jumps));
     if (!others.size) return undefined;
-    const out = blank(name), many = refs.filter(([other, , over]) => over !== null && found[other]?.length > count ** 2).map(([other]) => other);
+    const out = blank(name), sizes = new Float64Array(out.length / count), many = refs.filter(([other, , over]) => over !== null && found[other]?.length > count ** 2).map(([other]) => other);
     if (many.length) along(out, column, [...new Set(many)], found, sheet, count);
-    for (const other of others) if (!many.includes(other)) chain(out, found[other], (known[`${name} ${other}`] ??= []), column, other, sheet, count);
-    return out;
+    for (const other of others) if (!many.includes(other)) chain(out, sizes, found[other], (known[`${name} ${other}`] ??= []), column, other, sheet, count);
+    return out.map((effect, n) => (Math.abs(effect) <= LEFT * sizes[Math.floor(n / count)] ? 0 : effect));
   };
   const put = ({ name }, effects) => {
     if (effects) found[name] = effects;
@@ -47,13 +48,14 @@ function settleEffects(loop, again, put, found) {
 
 // Adds what errors do to a column by way of the cells of another. `known` has the slopes: they are asked for once, or
 // again where a step turns out to be far too short or too long, in a loop.
-function chain(out, effects, known, column, other, sheet, count) {
+function chain(out, sizes, effects, known, column, other, sheet, count) {
   const steps = stepsOf(sheet.value[other], effects, count), size = sheet.status[column.name].length;
   if (!known.length) known.push(...movedTogether(column, other, sheet));
   for (const part of known) {
     if (part.cells.some((cell) => steps[cell] && !(part.steps?.[cell] < 8 * steps[cell] && steps[cell] < 8 * part.steps[cell]))) askSlopes(part, column, other, steps, sheet);
     for (let row = 0; part.steps && row < size; row++) {
-      const slope = part.slopes[row], from = part.cell(row) * count, to = row * count;
+      const slope = part.slopes[row], cell = part.cell(row), from = cell * count, to = row * count;
+      if (slope) sizes[row] += Math.abs(slope) * part.steps[cell];
       for (let n = 0; slope && n < count; n++) out[to + n] += slope * effects[from + n];
     }
   }

@@ -8,7 +8,7 @@ const ROUNDED = 2 ** -41, NEAR_SLOPE = 2 ** -22; // of a value; of one that move
 // Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
 function* errorsIn(look) {
   for (const { name, axis } of CELLS) {
-    const column = LIVE.columns[name], texts = column.given && !column.given.bounds.integer ? look.texts(name) : [];
+    const column = LIVE.paired ? withScatter(look, name) : LIVE.columns[name], texts = column.given && !column.given.bounds.integer ? look.texts(name) : [];
     for (const [row, text] of texts.entries()) {
       const index = look.trace.index(name, row), own = errorsOf(column, index, text), called = look.trace.address(name, row);
       for (const error of own) yield { ...error, called: own.length > 1 ? `${called}, ${error.said}` : called, moves: [[name, row, error.u]] };
@@ -34,7 +34,7 @@ class Sure {
     this.trace = look.trace;
     this.errors = [...errorsIn(look)];
     const place = (called) => this.errors.findIndex((error) => error.called === called);
-    this.pairs = LIVE.correlated.flatMap(([one, other, r]) => {
+    this.pairs = (LIVE.paired ? correlations(look) : LIVE.correlated).flatMap(([one, other, r]) => {
       const rows = [...this.trace.sheet.value[one].keys()].map((row) => [one, other].map((name) => place(this.trace.address(name, row))));
       return rows.filter((both) => !both.includes(-1)).map((both) => [...both, r]);
     });

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import grouped
 import pytest
 import spreadsheets
 
@@ -274,3 +275,69 @@ def test_no_sensitivity_is_a_number_as_issued(folder: str) -> None:
         }
         assert not numbers, result
     assert "stay as issued" not in str(cells.get("A2", ""))
+
+
+def test_a_sensitivity_without_formula_is_told_of_the_inputs_as_issued(
+    require: Callable[..., str], tmp_path: Path
+) -> None:
+    """That of a result of each group: neither u nor U nor what is decided with it outlives an edit."""
+    delivered = spreadsheets.deliver(
+        grouped.write(tmp_path / "few", grouped.rates(1), grouped.RATES_HEAD, grouped.RATES)
+    )
+    first = float(delivered.grid["x"].values[0])  # type: ignore[arg-type]
+    books = {
+        "as issued": delivered.content,
+        "edited": delivered.edited({("x", 0): 1.01 * first}),
+        "typed again": delivered.edited({("x", 0): first}),
+    }
+    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)
+    issued = budgets(spreadsheets.cells_of(delivered.content)["uncertainty"])
+    for name, cells in read.items():
+        found = budgets(cells["uncertainty"])
+        for result in (result for result in issued if result.startswith("b[")):
+            for what in ("standard uncertainty u", "expanded uncertainty U"):
+                again = found[result][what, "B"]
+                if name == "edited":
+                    assert isinstance(again, str)
+                    assert again.startswith("#"), (result, what)
+                else:
+                    assert again == pytest.approx(issued[result][what, "B"], rel=1e-9)
+        assert found["spread"]["standard uncertainty u", "B"] > 0
+    assert sum(result.startswith("b[") for result in issued) > 1
+
+
+REPEATED = """from sympy import sqrt
+
+from loopsheet import Method, count, let, mean, measured
+
+
+class Repeated(Method, rows="deliveries", headline="s"):
+    "How masses repeat."
+    m = measured("mg", "mass of a delivery")
+    s = let(sqrt(sum((m - mean(m)) ** 2) / (count(m) - 1)), "scatter", "mg")
+"""
+
+
+def test_what_second_order_takes_away_is_a_share_of_the_first(
+    require: Callable[..., str], tmp_path: Path
+) -> None:
+    """Readings that scatter less have less of it, too: nothing is left of u if it stays as issued."""
+    numbers = [998.1, 995.4, 997.2, 996.8, 994.9]
+    quiet = [997.0 + (number - 997.0) / 4 for number in numbers]
+
+    def made(name: str, numbers: list[float]) -> spreadsheets.Delivered:
+        rows = "".join(f"{n},{number:.4f}\n" for n, number in enumerate(numbers, start=1))
+        toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nm = "scatter"\n'
+        files = {"workbook.py": REPEATED, "m.csv": f"delivery,m [mg]\n{rows}", "report.toml": toml}
+        return Office.made(tmp_path / name, files)
+
+    before, after = made("before", numbers), made("after", quiet)
+    books = {"edited": before.edited({("m", row): number for row, number in enumerate(quiet)})}
+    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)["edited"]
+    (found,) = budgets(read["uncertainty"]).values()
+    issued, rebuilt = (
+        budgets(spreadsheets.cells_of(each.content)["uncertainty"])["s"] for each in (before, after)
+    )
+    assert issued["variance of second order", "B"] < -(rebuilt["standard uncertainty u", "B"] ** 2)
+    for what in ("standard uncertainty u", "expanded uncertainty U", "variance of second order"):
+        assert found[what, "B"] == pytest.approx(rebuilt[what, "B"], rel=1e-3)

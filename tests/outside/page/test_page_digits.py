@@ -11,6 +11,7 @@ import driving
 import pytest
 from driving import Live
 
+from loopsheet.report.build import build
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
@@ -235,3 +236,33 @@ def test_the_doubt_about_second_order_follows_an_edit(
     told = [[text for text in page.around() if "U" in text] for page in pages]
     assert driving.alike(*told)
     assert any("U may not hold" in text for text in told[0]) == (edited == "0")
+
+
+COOLING = """from loopsheet import Method, given, let
+
+
+class Cooling(Method, headline="q"):
+    "What an estimate and a length make."
+    r = given("1", "a rate that is estimated")
+    h = given("mm", "a length")
+    q = let(r * h, "what is sought")
+"""
+
+
+def test_what_an_edit_leaves_of_an_uncertainty_is_struck_out(open_page: Open, tmp_path: Path) -> None:
+    """Of other laws the page knows nothing: beside the new value stands no U that passes for its own."""
+    (tmp_path / "workbook.py").write_text(COOLING, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[parameters]\nr = "0.25, exponential"\nh = "12.0 mm, u = 0.1 mm"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    build(Study(tmp_path), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    told, note = live.page.locator(".headline .sure"), live.page.locator(".headline + .stale")
+    style = "one => getComputedStyle(one).textDecorationLine"
+    assert told.inner_text().startswith("U")
+    assert (told.evaluate(style), note.is_visible()) == ("none", False)
+    live.page.locator("#cell-h").fill("24.0")
+    live.page.locator("#cell-h").press("Enter")
+    assert (told.evaluate(style), note.is_visible()) == ("line-through", True)
+    assert "as issued" in note.inner_text()
+    live.click("live-reset")
+    assert (told.evaluate(style), note.is_visible()) == ("none", False)
