@@ -134,7 +134,8 @@ class Printed:
     scale: Fraction
     """One printed unit in SI (1/1000000 for ``um``)."""
     mode: str = "rounded"
-    """How it was shortened: ``"rounded"`` or ``"truncated"``."""
+    """How it was shortened: ``"rounded"`` or ``"truncated"``; ``"up"`` of a published uncertainty that
+    was rounded up, so that it promises no more (JCGM 100, 7.2.6)."""
     stated: tuple[Error, ...] | None = None
     """The errors that the user stated, each independent of all others; none of them if it is exact. Without a
     statement the digits say it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -67,6 +68,32 @@ def test_an_expanded_uncertainty_of_a_chosen_factor_is_so_many_u(tmp_path: Path)
     rows = f'H.1,"U(l, k=2)",1,{2e9 * u:.3f},nm,,,\nH.1,"U(l, k=3)",1,{2e9 * u:.3f},nm,,,\n'
     (folder / "published.csv").write_text(f"{HEADER}\n{rows}")
     assert [each.verdict for each in Study(folder).refereed.comparisons_u] == ["same", "differs"]
+
+
+@pytest.mark.parametrize(("mode", "right"), [("", 0), ("up", 1), ("truncated", 0)])
+def test_an_uncertainty_may_have_been_rounded_up(tmp_path: Path, mode: str, right: int) -> None:
+    """Where that is said; a whole unit too much is wrong even so."""
+    folder = end_gauge(tmp_path, f"{HEADER}\n" + "H.1,u(l),1,1,nm,,,\n")
+    u = Study(folder).refereed.comparisons_u[0].cell.value
+    assert u is not None
+    tenths = math.floor(1e10 * u)
+    assert 0.1 < 1e10 * u - tenths < 0.4
+    said = f'[published.printed]\n"u(l)" = "{mode}"\n' if mode else ""
+    toml = folder / "report.toml"
+    toml.write_text(toml.read_text(encoding="utf-8") + said, encoding="utf-8")
+    for more in (-1, 0, 1, 2):
+        row = f"H.1,u(l),1,{(tenths + more) / 10:.1f},nm,,,\n"
+        (folder / "published.csv").write_text(f"{HEADER}\n{row}", encoding="utf-8")
+        (found,) = Study(folder).refereed.comparisons_u
+        assert found.verdict == ("same" if more == right else "differs"), row
+
+
+def test_only_an_uncertainty_is_rounded_up(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    end_gauge(tmp_path, f"{HEADER}\n" + "H.1,l,1,50.000838,mm,,,\n")
+    toml = tmp_path / "report.toml"
+    toml.write_text(toml.read_text(encoding="utf-8") + '[published.printed]\nl = "up"\n', encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 2
+    assert "error[LS208]" in capsys.readouterr().err
 
 
 def test_a_known_difference_of_an_uncertainty_is_pinned_in_its_row(

@@ -27,6 +27,7 @@ from ..messages.errors import (
 from ..quantity import there
 from ..sheet import Axis, with_parents
 from ..workbook import RowTable
+from .about import read_about
 from .cards import AskedCards, read_cards
 from .draws import read_draws
 from .expected import Expectation, read_expected
@@ -516,23 +517,22 @@ class _Reader:
         )
         return read_draws(source, of, self.findings) if source else None
 
-    def modes(self, of: tuple[str, ...], known: list[str] | None) -> dict[str, str]:
+    def modes(self, of: tuple[str, ...], columns: list[str] | None) -> dict[str, str]:
         """How the columns of a file were shortened, where it was not by rounding."""
         path = (*of, "printed")
         written: Any = self.toml.data
         for key in path:
             written = written[key]
         table = self.tables.keys(
-            path, written if known is None and isinstance(written, dict) else known or ()
+            path, written if columns is None and isinstance(written, dict) else columns or ()
         )
         modes = {}
         for column in table:
             mode = self.tables.text(path, column, "truncated")
-            if mode is not None and mode not in MODES:
-                at = self.toml.value(*path, column)
-                self.findings.add(
-                    "LS208", at, text=mode, known=listing(MODES), suggestion=suggest(mode, MODES)
-                )
+            known = (*MODES, *(["up"] if (about := read_about(column)) and about.is_width else []))
+            if mode is not None and mode not in known:
+                at, nearest = self.toml.value(*path, column), suggest(mode, known)
+                self.findings.add("LS208", at, text=mode, known=listing(known), suggestion=nearest)
             elif mode is not None:
                 modes[column] = mode
         return modes

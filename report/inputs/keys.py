@@ -136,7 +136,8 @@ TABLES: dict[tuple[str, ...], dict[str, Key]] = {
             '["C_log"]', "Columns that are given or computed, and not printed: they may have any value."
         ),
         "printed": Key(
-            '{ alpha = "truncated" }', "Columns whose digits were cut off; else they were rounded."
+            '{ alpha = "truncated" }',
+            'Columns whose digits were cut off, and uncertainties that were rounded `"up"`; else rounded.',
         ),
         "errata": Key("[published.errata]", "Misprints that are known."),
     },

@@ -36,7 +36,7 @@ DIGITS = 15
 
 
 def print_as(value: float, like: Printed) -> str:
-    """Print a value as another number was printed: in its unit, with its decimals, rounded or truncated.
+    """Print a value as another number was printed: in its unit, with its decimals, shortened as that was.
 
     Parameters
     ----------
@@ -79,6 +79,8 @@ def _digits(value: float, exact: Fraction, like: Printed) -> Iterator[int]:
     near = Fraction(Context(prec=DIGITS).divide(Decimal(exact.numerator), Decimal(exact.denominator))) / unit
     if like.mode == "truncated":
         yield math.trunc(near)
+    elif like.mode == "up":
+        yield math.ceil(near)
     elif near % 1 == Fraction(1, 2):
         yield from sorted((math.floor(near), math.ceil(near)), key=abs, reverse=True)
     else:
