@@ -354,6 +354,8 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
         ('alpha_mean = "1.25 .. x"', "LS441", "x"),
         ('alpha_mean = "1.30 +- 5 %"', "LS441", "1.30 +- 5 %"),
         ('alpha_mean = "1.30 +- 0"', "LS441", "1.30 +- 0"),
+        ('alpha_mean = "1e40 +- 1"', "LS441", "1e40 +- 1"),
+        ('alpha_mean = "5 +- 1e-200"', "LS441", "5 +- 1e-200"),
         ('alpha_mean = "1.30 +- x"', "LS441", "x"),
         ('alpha_mean = "1 m +- 2 s"', "LS441", "1 m +- 2 s"),
         ('alpha_mean = "1.35 .. 1.25"', "LS441", "1.35 .. 1.25"),

@@ -199,7 +199,12 @@ def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
         raise StatementError("LS441", text[0], 0, "a tolerance is greater than 0")
     places = max(nominal.decimals, tolerance.decimals, 0)
     ends = nominal.number - width, nominal.number + width
-    low, high = (read_printed(_decimal(end, places), known) for end in ends)
+    try:
+        low, high = (read_printed(_decimal(end, places), known) for end in ends)
+    except NumberError as error:
+        raise StatementError("LS441", text[0], 0, error.fields["suggestion"]) from None
+    if low.value >= high.value:
+        raise StatementError("LS441", text[0], 0, "the tolerance has to change fifteen digits")
     return low, high
 
 
@@ -207,7 +212,7 @@ def _decimal(number: Fraction, places: int) -> str:
     """In decimal digits, at least so many of them behind the point, and at most fifteen in all."""
     with localcontext(prec=15):
         exact = Decimal(number.numerator) / Decimal(number.denominator)
-    return f"{exact:.{places}f}" if exact == round(exact, places) else f"{exact:f}"
+    return f"{exact:.{max(places, -int(exact.normalize().as_tuple().exponent))}f}"
 
 
 def _number(text: str, start: int, code: str) -> Printed:
