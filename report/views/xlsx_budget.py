@@ -21,7 +21,7 @@ from ..quantity import behind
 from ..result.numbers import rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
-from .xlsx_inputs import as_printed
+from .xlsx_inputs import as_printed, same_sum
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
@@ -42,8 +42,6 @@ _NONE = 1e-12
 """Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _AS_ISSUED = 11
 """The column, from 0, that names the inputs where sensitivities are numbers."""
-_SAME = 1e-12
-"""Of a sum: what is left of it where it is as issued."""
 _UNLIMITED = 10.0**15
 """Stands for infinitely many degrees of freedom."""
 _DOF = '[>=1000000000]"∞";General'
@@ -87,14 +85,12 @@ def _write_as_issued(sheet: Any, style: Style, report: Report, grid: Grid) -> st
     for row, block in enumerate(given, start=4):
         place, status = block.place, report.values.status[block.of]
         cells, rows = place.range(), range(place.row + 1, place.row + place.rows + 1)
-        numbers = [
-            0.0 if bad else place.of(x) for x, bad in zip(report.values.value[block.of], status, strict=True)
-        ]
+        values = report.values.value[block.of].tolist()
+        numbers = [0.0 if bad else place.of(x) for x, bad in zip(values, status, strict=True)]
         same = []
         for formula, weigh in ("SQRT(ROW({}))", math.sqrt), ("LN(ROW({}))", math.log):
             terms = [weigh(at) * number for at, number in zip(rows, numbers, strict=True)]
-            told = f"SUMPRODUCT({formula.format(cells)},{cells})"
-            same.append(f"ABS({told}-({math.fsum(terms)!r}))<={_SAME * math.fsum(map(abs, terms))!r}")
+            same.append(same_sum(f"{formula.format(cells)},{cells}", terms))
         style.text(sheet, row, _AS_ISSUED, block.of, "name")
         style.formula(sheet, row, _AS_ISSUED + 1, f"=AND({','.join(same)})", True, style("text"))
     column = letters(_AS_ISSUED + 1)

@@ -15,7 +15,7 @@ from ..quantity import Printed, behind
 from ..result.result import Report
 from .xlsx_style import Style, open_format, said
 
-__all__ = ["GivenCells"]
+__all__ = ["GivenCells", "as_printed", "same_sum"]
 
 _MOST_NOTES = 500
 """Cells of a column that get a note of their own; a longer one has it in its header only."""
@@ -201,7 +201,7 @@ class GivenCells:
         def as_issued(power: int, at: Sequence[float], *beside: str) -> str:
             terms = [row * number**power for row, number in zip(at, issued, strict=True)]
             told = ",".join((*[cells] * power, *beside))
-            return f"ABS(SUMPRODUCT({told})-({sum(terms)!r}))<={_SAME * sum(map(abs, terms))!r}"
+            return same_sum(told, terms)
 
         same = [as_issued(power, [1.0] * len(issued)) for power in (1, 2, 3)]
         rows = numbers.place.range(place.worksheet)
@@ -222,6 +222,11 @@ class GivenCells:
 def _number(printed: Printed, place: Place) -> float:
     """A printed number in the unit of its cell."""
     return float((printed.value - place.zero) / place.scale)
+
+
+def same_sum(told: str, terms: Sequence[float]) -> str:
+    """The formula that says whether a sum of products of cells is that of some numbers."""
+    return f"ABS(SUMPRODUCT({told})-({sum(terms)!r}))<={_SAME * sum(map(abs, terms))!r}"
 
 
 def as_printed(report: Report, block: CellBlock, row: int) -> str:
