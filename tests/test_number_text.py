@@ -46,6 +46,21 @@ def test_anything_else_is_refused_with_its_reason(code: str, text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("\u22120.35", "write the minus sign as an ordinary hyphen"),
+        ("<0.05", "what is beyond a limit has no number"),
+        ("\u2265 12", "what is beyond a limit has no number"),
+        ("\u2013", "in a table of measurements the cell of what was not measured is empty"),
+    ],
+)
+def test_what_is_no_number_is_told_how_to_be_one(text: str, hint: str) -> None:
+    with pytest.raises(NumberError) as caught:
+        read_number(text)
+    assert caught.value.fields["suggestion"].startswith(hint)
+
+
+@pytest.mark.parametrize(
     ("text", "plain"),
     [
         ("2,334", "2.334"),
@@ -53,6 +68,7 @@ def test_anything_else_is_refused_with_its_reason(code: str, text: str) -> None:
         ("1,002.5", "1002.5"),
         ("1 002,5", "1002.5"),
         ("-0,5", "-0.5"),
+        ("\u22120,35", "-0.35"),
     ],
 )
 def test_a_decimal_comma_is_shown_as_it_should_be_written(text: str, plain: str) -> None:

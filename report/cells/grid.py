@@ -197,6 +197,8 @@ class Product(NamedTuple):
     """The block whose row is that of the given cell."""
     named: str | None = None
     """Of a column of results, how the row of one names the given cell; empty for the same row."""
+    rows: str = ""
+    """Where the row of the given cell names that of a result, its group: the axis of the former."""
 
 
 class FilledDown(NamedTuple):

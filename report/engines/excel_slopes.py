@@ -17,12 +17,12 @@ import numpy as np
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, eye
 
 from ..cells.grid import LONGEST, SLOPES, CellBlock, FilledDown, Place
-from ..plan.adjoints import Adjoint, Share, Term, adjoints
+from ..plan.adjoints import Adjoint, Grouping, Share, Term, adjoints
 from ..plan.derivatives import derivatives
 from ..plan.kept import as_data
 from ..plan.nodes import Leaf, Part, Plan
 from ..plan.slopes import with_unknowns
-from ..sheet import Axis, Column, Given, Iterated, PairAxis, RepeatAxis, Sheet
+from ..sheet import Axis, Column, Given, GroupAxis, Iterated, PairAxis, RepeatAxis, Sheet
 from .excel import ExcelPrinter, ordered
 from .excel_formulas import Formulas, Writing
 from .excel_values import NotPrintable
@@ -69,6 +69,13 @@ class Slopes:
             [tuple(loop.names) for loop in sheet.loops],
             {column.name for column in sheet.columns if isinstance(column.rule, Iterated)},
             self.repeats,
+            {
+                axis.name: Grouping(
+                    axis.members.name, axis.members.of.name, axis.index_name, axis.members.of.index_name
+                )
+                for axis in sheet.axes
+                if isinstance(axis, GroupAxis)
+            },
             {name for name, part in self.parts.items() if any(leaf.index for leaf in self.named(part))},
             {column.name for column in given if not sheet.bounds[column.name].integer},
         )

@@ -106,19 +106,22 @@ def _why_not(text: str) -> NumberError:
         return NumberError("LS405", text=text)
     if text.lower().lstrip("+-") in _NOT_FINITE:
         return NumberError("LS404", text=text)
-    if _COMMA.fullmatch(text):
-        point = max(text.rfind("."), text.rfind(","))
-        plain = re.sub(r"[., '\u00a0\u202f]", "", text[:point]) + "." + text[point + 1 :]
+    usual = re.sub("[\u2212\u2013]", "-", text)  # word processors make a minus sign or a dash of the hyphen
+    if _COMMA.fullmatch(usual):
+        point = max(usual.rfind("."), usual.rfind(","))
+        plain = re.sub(r"[., '\u00a0\u202f]", "", usual[:point]) + "." + usual[point + 1 :]
         # Nobody knows whether 1,234 is a little more than one or a thousand: it is never guessed.
-        thousands = f" or '{text.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(text) else ""
+        thousands = f" or '{usual.replace(',', '')}', whichever is meant" if _EITHER.fullmatch(usual) else ""
         return NumberError("LS402", text=text, example=plain, thousands=thousands)
     suggestion = ""
     if behind := _POWER_BEHIND.fullmatch(text):
         suggestion = f"the power of ten stands before its uncertainty: {behind[1]}{behind[3]}{behind[2]}"
     elif with_uncertainty(text):
         suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
-    elif _NUMBER.fullmatch(text.replace("\u2212", "-").replace("\u2013", "-")):
+    elif _NUMBER.fullmatch(usual):
         suggestion = "write the minus sign as an ordinary hyphen"
+    elif re.match("[<>\u2264\u2265]", text):
+        suggestion = "what is beyond a limit has no number: say the limit in a text, and leave its cell empty"
     elif not re.search(r"[0-9]", text):
         suggestion = "in a table of measurements the cell of what was not measured is empty"
     elif _NUMBER.fullmatch(re.sub(r"[\s_']", "", text, flags=re.ASCII)):

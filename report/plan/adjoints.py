@@ -8,6 +8,8 @@ engines print or compute it.
 - A result that is one number leads back through sums, to all rows of what they run over.
 - A column whose rows are results leads back row by row (``along``), to what its rows name themselves; numbers
   on the way that are no rows' are results of their own, told once.
+- A result of each group leads back as a number does: a row belongs to one group, so that one adjoint for each
+  row is that of its own group's result. Numbers have one for each group, and are led back as above.
 - A loop ends where its iterated columns x satisfy x = S(x, r). By the implicit function theorem the adjoints
   of x there are those of what is behind the loop, solved with I - dS/dx. Iterated rows name one another by
   way of numbers alone, so this is solved row by row first, and then for the numbers.
@@ -23,7 +25,7 @@ from ..cells.grid import Product
 from .order import places
 from .slopes import NodeDerivatives
 
-__all__ = ["Adjoint", "Adjoints", "Solution", "Term", "Unfollowed", "adjoints"]
+__all__ = ["Adjoint", "Adjoints", "Grouping", "Solution", "Term", "Unfollowed", "adjoints"]
 
 
 class Unfollowed(Exception):
@@ -74,6 +76,19 @@ class Share(NamedTuple):
     """For rows, the quantities of the value and of the number of each place; for a number, of its value."""
 
 
+class Grouping(NamedTuple):
+    """What an axis of groups is made of."""
+
+    members: str
+    """The axis of the rows, those of one group beside one another."""
+    rows: str
+    """The axis that these repeat."""
+    group: str
+    """The index by which rows of either name their group."""
+    row: str
+    """The index by which members name the row that they repeat."""
+
+
 @dataclass(frozen=True)
 class Adjoint:
     """A derivative of a result, or what is needed for it."""
@@ -120,6 +135,7 @@ def adjoints(
     loops: Sequence[Sequence[str]],
     iterated: Collection[str],
     repeats: Mapping[str, tuple[str, str]],
+    groups: Mapping[str, Grouping],
     indexed: Collection[str],
     given: Collection[str],
 ) -> Adjoints:
@@ -139,12 +155,14 @@ def adjoints(
         Those of them that are iterated.
     repeats : mapping of str to (str, str)
         Axes that repeat each row of another one, with that one and the index by which they name its rows.
+    groups : mapping of str to Grouping
+        The axes of groups.
     indexed : collection of str
         The parts that name cells of rows that are not their own.
     given : collection of str
         What derivatives are asked for by.
     """
-    making = _ReversePass(nodes, axes, loops, iterated, repeats, indexed)
+    making = _ReversePass(nodes, axes, loops, iterated, repeats, groups, indexed)
     ways: dict[str, dict[str, tuple[Product, ...]]] = {}
     for result in results:
         kept = dict(making.made), dict(making.folds), dict(making.heads)
@@ -185,8 +203,10 @@ class _LoopClosure:
 class _PendingTerms:
     """The adjoints of one result so far: terms wait until all users of a cell are done."""
 
-    def __init__(self, result: str) -> None:
+    def __init__(self, result: str, groups: str | None = None) -> None:
         self.result = result
+        self.groups = groups
+        """The axis of the groups, if there is a result of each."""
         self.terms: dict[str, list[Term]] = {}
         self.made: dict[str, str] = {}
         """The quantities, by what they are derivatives by."""
@@ -205,12 +225,13 @@ class _ReversePass:
         loops: Sequence[Sequence[str]],
         iterated: Collection[str],
         repeats: Mapping[str, tuple[str, str]],
+        groups: Mapping[str, Grouping],
         indexed: Collection[str],
     ) -> None:
         self.nodes = {node.name: node for node in nodes if "~" not in node.name}
         self.order = list(self.nodes)
         self.axes, self.iterated = axes, set(iterated)
-        self.repeats, self.indexed = repeats, set(indexed)
+        self.repeats, self.groups, self.indexed = repeats, groups, set(indexed)
         self.loop_of = {name: n for n, loop in enumerate(loops) for name in loop}
         self.made: dict[str, Adjoint] = {}
         self.folds: dict[int, _LoopClosure] = {}
@@ -236,6 +257,8 @@ class _ReversePass:
         """The ways from a result to all that was given."""
         if self.axis(result) is None:
             return {name: (Product(made),) for name, made in self.of_number(result).items()}
+        if self.axis(result) in self.groups:
+            return self.of_groups(result)
         found: dict[str, list[Product]] = {}
         for (name, index), made in self.along(result, lambda node: False).items():
             if not self.nodes[name].slopes:
@@ -255,7 +278,37 @@ class _ReversePass:
         own = self.heads[result]
         return {name: made for name, made in own.made.items() if not self.nodes[name].slopes}
 
-    # --- backwards, for a number
+    def of_groups(self, result: str) -> dict[str, tuple[Product, ...]]:
+        """The ways from a result of each group."""
+        groups = self.axis(result)
+        assert groups is not None
+        own, grouped = _PendingTerms(result, groups), self.groups[groups]
+        found: dict[str, list[Product]] = {}
+        for name, made in self.back(own, {result: 1.0}).made.items():
+            node = self.nodes[name]
+            if not node.slopes:
+                ways = {None: Product(made), groups: Product(made, "", "")}
+                own_way = ways.get(node.axis, Product(made, "", grouped.group, grouped.rows))
+                found.setdefault(name, []).append(own_way)
+            elif node.axis is None:
+                for given, then in self.of_number(name).items():
+                    found.setdefault(given, []).append(Product(made, then))
+        return {name: tuple(ways) for name, ways in found.items()}
+
+    def within(self, groups: str, node: NodeDerivatives) -> None:
+        """Refuse a node of a group's result that names what another group may have."""
+        own = self.groups[groups]
+        named: dict[str | None, set[str | None]] = {
+            groups: {None},
+            own.rows: {None, own.group},
+            own.members: {own.row, own.group},
+        }
+        rows = node.over or node.axis
+        indices = {slope.index for slope in node.slopes if slope.axis is not None}
+        if rows not in named or not indices <= named[rows] or self.loop(node.name) is not None:
+            raise Unfollowed(node.name)
+
+    # --- backwards, for a number or for one of each group
 
     def back(self, own: _PendingTerms, start: Mapping[str, float], only: int | None = None) -> _PendingTerms:
         """Take all that a result rests on, the last first; or only what stands in a loop."""
@@ -264,7 +317,8 @@ class _ReversePass:
             name = waiting.pop()
             if name not in rests:
                 rests.add(name)
-                waiting += [_settled(slope.by) for slope in self.nodes[name].slopes]
+                if not self.ends(own, name):
+                    waiting += [_settled(slope.by) for slope in self.nodes[name].slopes]
         inside: int | None = None
         for name in reversed([name for name in self.order if name in rests]):
             loop = self.loop(name)
@@ -280,21 +334,27 @@ class _ReversePass:
                     own.terms.setdefault(name, [])
                 continue
             self.quantity(own, name, start.get(name, 0.0))
-            if name in own.made:
+            if name in own.made and not self.ends(own, name):
                 self.through(own, self.nodes[name], own.made[name])
         if inside is not None:
             self.close(own, inside)
         return own
 
+    def ends(self, own: _PendingTerms, name: str) -> bool:
+        """Whether a node is a number on the way from the results of groups: it is led back for itself."""
+        return own.groups is not None and self.axis(name) is None
+
     def quantity(self, own: _PendingTerms, name: str, plus: float = 0.0) -> None:
         """The adjoint of a node whose users are done, if there is anything."""
         terms = own.terms.pop(name, [])
         if terms or plus:
-            made = f"d {own.result} / d {name}"
-            own.made[name] = self.add(Adjoint(made, own.result, name, self.axis(name), tuple(terms), plus))
+            made, axis = f"d {own.result} / d {name}", self.axis(name) or own.groups
+            own.made[name] = self.add(Adjoint(made, own.result, name, axis, tuple(terms), plus))
 
     def through(self, own: _PendingTerms, node: NodeDerivatives, by: str) -> None:
         """Lead the adjoint of a node to what it names."""
+        if own.groups:
+            self.within(own.groups, node)
         rows = node.over or node.axis
         for slope in node.slopes:
             factors = (slope.value, self.share(node)) if node.by_order else (slope.value,)
@@ -306,13 +366,15 @@ class _ReversePass:
             self.put(own, _settled(slope.by), term)
 
     def on_rows(self, own: _PendingTerms, by: str, node: NodeDerivatives) -> str:
-        """The adjoint of a sum in groups, for each of the rows of its group."""
+        """The adjoint of a sum in groups, for each of the rows of its group that it takes."""
         name = f"{by} of each row"
-        term = Term((), by, node.over, group=node.axis)
+        term = Term((), by, node.over, node.of, over=True, group=node.axis)
         return self.add(Adjoint(name, own.result, node.name, node.over, (term,)))
 
     def put(self, own: _PendingTerms, name: str, term: Term) -> None:
         """A term for what a node names; rows that repeat another one's are added up for that one first."""
+        if self.ends(own, name) and own.groups and term.rows != own.groups:
+            term = replace(term, axis=term.rows, index=self.groups[own.groups].group)
         if term.rows is not None and term.rows in self.repeats:
             of, index = self.repeats[term.rows]
             if (term.axis, term.index) not in ((term.rows, None), (term.rows, index)) and (

@@ -205,17 +205,18 @@ class _Written:
 
     def products(self, ways: Sequence[Product], row: int) -> Iterator[str]:
         """What is added to the derivative by a row of a given column."""
-        result = self.row_of_cell
-        for first, then, index in ways:
+        result, layouts = self.row_of_cell, self.report.values.layouts
+        for first, then, index, rows in ways:
             place = self.grid[first].place
             if then:
                 yield f"{place.cell(result)}*{self.grid[then].place.cell(row)}"
             elif self.axis is None:
                 yield place.cell(row)
-            else:
-                rows = self.report.values.layouts[self.axis].rows
-                if index is None or row == (rows[index][result] if index else result):
-                    yield place.cell(result)
+            elif rows:
+                if layouts[rows].rows[index or ""][row] == result:
+                    yield place.cell(row)
+            elif index is None or row == (layouts[self.axis].rows[index][result] if index else result):
+                yield place.cell(result)
 
     @property
     def axis(self) -> str | None:
