@@ -82,11 +82,12 @@ class Assembly:
         counts: Mapping[str, float],
         units: Mapping[str, str],
         first: Sequence[str],
+        results: Sequence[str],
         worded: Mapping[str, Sequence[str]],
         thinned: Collection[str],
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
-        self.units, self.first = units, first
+        self.units, self.first, self.results = units, first, results
         self.names = worksheets
         self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
         self.places: dict[str, Place] = {}
@@ -116,7 +117,7 @@ class Assembly:
     def told(self) -> dict[str, Any]:
         """All of it but the values, as data."""
         self.put_all()
-        derived = Slopes(self.sheet, self.first)
+        derived = Slopes(self.sheet, self.results)
         steps = {
             name: self.places[[c.name for c in each.cells if c.name.startswith(f"{name}.u_")][-1]]
             for name, each in self.unrolled.items()

@@ -39,6 +39,7 @@ def grid(
     first: Sequence[str] = (),
     drawn: Drawn | None = None,
     worded: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    limited: Sequence[str] = (),
 ) -> Grid:
     """Lay a sheet out as the cells of a workbook, with the values that they have now.
 
@@ -55,6 +56,8 @@ def grid(
         What is drawn as native charts.
     worded : mapping of str to sequence of str
         By index set, the columns of words that stand beside the numbers of rows that are made of no others.
+    limited : sequence of str
+        Other columns whose derivatives have cells, too.
 
     Raises
     ------
@@ -76,7 +79,7 @@ def grid(
         from .excel_assembly import Assembly
 
         return Assembly(
-            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, beside, thinned
+            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, results, beside, thinned
         ).told()
 
     own = [
@@ -87,7 +90,15 @@ def grid(
     words = [(column.meaning, column.unit, column.display, column.source) for column in whole.columns]
     names = [list(each.by_name) for each in (sheet, values.sheet)]
     beside = {axis: list(columns) for axis, columns in worded.items()}
-    sizes = sorted(counts.items()), sorted(units.items()), list(first), sorted(beside.items()), thinned
+    results = list(dict.fromkeys((*first, *limited)))
+    sizes = (
+        sorted(counts.items()),
+        sorted(units.items()),
+        list(first),
+        results,
+        sorted(beside.items()),
+        thinned,
+    )
     hangs_on = repr((names, own, words, sizes))
     told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))

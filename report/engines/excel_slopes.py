@@ -65,7 +65,7 @@ class Slopes:
         self.adjoints = adjoints(
             made.nodes,
             {column.name: _name(column.axis) for column in sheet.columns},
-            [name for name in results if name in sheet],
+            [name for name in results if name in sheet and not isinstance(sheet[name].rule, Given)],
             [tuple(loop.names) for loop in sheet.loops],
             {column.name for column in sheet.columns if isinstance(column.rule, Iterated)},
             self.repeats,

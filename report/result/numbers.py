@@ -14,8 +14,10 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_UP, Context, Decimal, localcontext
 
 __all__ = [
+    "LEADING",
     "MOST",
     "RAISED",
+    "SURE",
     "Numeral",
     "at",
     "chance",
@@ -32,11 +34,11 @@ __all__ = [
 
 MOST = 2
 """Digits of an uncertainty, unless somebody wants fewer (JCGM 100, 7.2.6)."""
-_SURE = 6
+SURE = 6
 """Digits of an uncertainty that are believed: what follows is of how it was computed."""
 _BEYOND = 2
 """An integer part with more digits than these beyond the known ones is written with a power of ten."""
-_LEADING = 3
+LEADING = 3
 """So are numbers with more zeros than this behind the decimal point."""
 _NOTHING = 1e-9
 """Of its uncertainty: what is left of a difference of two numbers that are alike is not more."""
@@ -160,7 +162,7 @@ def _told(u: float, most: int) -> tuple[Decimal, int]:
     Rounded, but up where rounding would make it smaller by more than a twentieth (JCGM 100, 7.2.6; EA-4/02,
     6.3). Whether it is a half, the digits say that are believed.
     """
-    short = _round(_round(_kept(u), _SURE), most)
+    short = _round(_round(_kept(u), SURE), most)
     if short < Decimal(u) * Decimal("0.95"):
         short = _round(Decimal(u), most, ROUND_CEILING)
     return short, short.adjusted() - most + 1
@@ -188,7 +190,7 @@ def at(value: float, place: int, scientific: bool | None = None) -> Numeral:
         short = _to(value, place)
         first = short.adjusted() if short else 0
         if scientific is None:
-            scientific = bool(short) and (place > 0 or first < -_LEADING)
+            scientific = bool(short) and (place > 0 or first < -LEADING)
         if not scientific:
             return _written(short, place, None)
         # 9.996e9 becomes 1.000e10: a power of ten keeps the number of digits, as every spreadsheet does.

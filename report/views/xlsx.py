@@ -18,7 +18,7 @@ from ..cells.grid import SCALARS, SLOPES, STEPS, Grid
 from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
-from .xlsx_budget import write_budgets
+from .xlsx_budget import told_budgets, write_budgets
 from .xlsx_cards import write_cards
 from .xlsx_charts import charted, write_charts
 from .xlsx_columns import ColumnwiseSheet
@@ -66,7 +66,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names = [SCALARS, *([_FIGURES] if charted(report, grid) else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
-    names += [_UNCERTAINTY] if any(budget.u > 0 for budget in report.uncertain().budgets) else []
+    names += [_UNCERTAINTY] if told_budgets(report) else []
     names += [SLOPES] if grid.on(SLOPES) else []
     names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}

@@ -1,4 +1,4 @@
-"""The worksheet of uncertainty budgets: of every result, as EA-4/02 lays them out, in live formulas.
+"""The worksheet of uncertainty budgets: of results and of what has limits, as EA-4/02 lays them out, live.
 
 Estimates are cells of the sheet; standard uncertainties, degrees of freedom and distributions may be changed.
 How readings scatter and what is a share of a number follow those cells, too, as do sensitivities, which are
@@ -13,20 +13,23 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
 from ..cells.grid import LONGEST, CellBlock, Grid, Product, checked, factors, letters
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
-from ..result.numbers import rounded
+from ..result.numbers import LEADING, SURE, rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
 from .xlsx_inputs import as_printed, same_sum
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
-__all__ = ["write_budgets"]
+__all__ = ["told_budgets", "write_budgets"]
 
+MOST_LIMITED = 20
+"""Cells with limits that are no results, of which the budgets are written."""
 _COLUMNS = (
     ("source", 26),
     ("estimate", 15),
@@ -59,10 +62,20 @@ _FACTORS = {
 """The coverage factor for a probability, of the shapes that have ends."""
 
 
+def told_budgets(report: Report) -> list[Budget]:
+    """Those of the results, and of the first other cells that have limits."""
+    uncertain = report.uncertain()
+    results = {each.cell: each for each in uncertain.budgets}
+    # Of what first order tells nothing of, draws do: these have no formulas.
+    limited = (each.budget for each in uncertain.conformities if not each.budget.unlooked)
+    others = islice((each for each in limited if each.cell not in results), MOST_LIMITED)
+    return [each for each in (*results.values(), *others) if each.is_known and each.u > 0]
+
+
 def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
-    """Write the budgets of the results, one below the other."""
+    """Write them, one below the other."""
     said = "Estimates follow the sheet; yellow cells may be changed."
-    budgets = [each for each in report.uncertain().budgets if each.is_known and each.u > 0]
+    budgets = told_budgets(report)
     fixed = any(_Written(sheet, style, report, grid, each, 0, "").is_fixed for each in budgets)
     if fixed:
         said += " Sensitivities without a formula are told of the inputs as issued, and of no others."
@@ -180,7 +193,7 @@ class _Written:
 
         Of an error that is larger in one cell than in another, that of its contribution.
         """
-        by, (name, _, size), grid = self.grid.slopes.get(self.budget.name, {}), source.moves[0], self.grid
+        by, (name, _, size), grid = self.ways, source.moves[0], self.grid
         ways = by.get(name, ())
         every = range(grid[ways[0].first].place.rows) if ways else ()
         if len(every) > 1 and self.axis is None and source.moves == tuple((name, row, size) for row in every):
@@ -189,12 +202,17 @@ class _Written:
             terms = [
                 f"{'+' if u * size > 0 else '-'}{text}{'' if source.u else self.times(source, own, row, u)}"
                 for own, row, u in source.moves
-                for text in self.products(by.get(own, ()), row)
+                for text in self.products(own, row)
             ]
             told = "".join(terms).removeprefix("+")
             told = f"({told})" if len(terms) > 1 or told.startswith("-") else told
         unit = (grid[name].place.scale if source.u else 1) / self.block.place.scale
         return f"={told}{factors(unit)[0]}" if 0 < len(told) < LONGEST else ""
+
+    @property
+    def ways(self) -> Mapping[str, Sequence[Product]]:
+        """The products that the derivatives by each given column are made of."""
+        return self.grid.slopes.get(self.budget.name, {})
 
     def times(self, source: ErrorSource, name: str, row: int, u: float) -> str:
         """The factor that is a standard uncertainty in SI, of an error that is not as large in all cells."""
@@ -203,10 +221,12 @@ class _Written:
         unit = factors(self.grid[name].place.scale)[0]
         return f"*({told}){unit}" if told else f"*{Decimal(repr(abs(u))):f}"
 
-    def products(self, ways: Sequence[Product], row: int) -> Iterator[str]:
+    def products(self, name: str, row: int) -> Iterator[str]:
         """What is added to the derivative by a row of a given column."""
         result, layouts = self.row_of_cell, self.report.values.layouts
-        for first, then, index, rows in ways:
+        if (name, row) == (self.budget.name, result):  # a number that was given may have limits, too
+            yield "1"
+        for first, then, index, rows in self.ways.get(name, ()):
             place = self.grid[first].place
             if then:
                 yield f"{place.cell(result)}*{self.grid[then].place.cell(row)}"
@@ -354,12 +374,16 @@ class _Written:
     def assigned(self, budget: Budget, own: str, at: Mapping[str, str]) -> tuple[Callable[[str], str], str]:
         """The coverage factor for the cell of a probability, and the name of the distribution."""
         plain = f'IF({at["dof"]}>{MOST_DOF},"normal","t")'
+
+        def factor(p: str) -> str:
+            return self.factor(own, {**at, "p": p}, budget)
+
         if budget.draws:
-            return lambda p: as_issued(p, budget.level, budget.factor), f'"{budget.shape}"'
+            return factor, f'"{budget.shape}"'
         named = self.by_shape(own, at, SHAPES, plain)
         if budget.shape is Shape.CONVOLVED:
             named = f'IF({self.unmoved(at)},"{budget.shape}",{named})'
-        return lambda p: self.factor(own, {**at, "p": p}, budget), named
+        return factor, named
 
     def below(self, own: str, dof: str) -> str:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
@@ -401,6 +425,8 @@ class _Written:
         known for the level as issued, and for no other.
         """
         p, dof = at["p"], at["dof"]
+        if budget.draws:
+            return as_issued(p, budget.level, budget.factor)
         otherwise = f"IF({dof}>{MOST_DOF},NORMSINV((1+{p})/2),TINV(1-{p},MIN({dof},{MOST_DOF})))"
         factors = {name: factor.format(p=p) for name, factor in _FACTORS.items()}
         if budget.law and budget.shape.value not in factors:
@@ -429,21 +455,40 @@ class _Written:
         return self.report.values.row(self.report.sheet[self.budget.name], self.budget.label)
 
     def statement(self, row: int, at: Mapping[str, str]) -> int:
-        """The result as it is written, to the digits of its uncertainty as issued."""
-        budget = self.budget
+        """The result as it is written, by the rule of :func:`~loopsheet.report.result.numbers.stated`."""
+        budget, style, sheet = self.budget, self.style, self.sheet
         if math.isnan(budget.factor):
             return row
         value, expanded = self.report.stated(budget.name, budget.value, budget.expanded)
-        form = f"0.{'0' * len(value.fraction)}" if value.fraction else "0"
-        unit = behind(self.block.unit)
-        power, over = (f"E{value.exponent}", f"/10^{value.exponent}") if value.exponent else ("", "")
-        if value.exponent and value.exponent < 0:
-            over = f"*10^{-value.exponent}"
-        parts = [f'TEXT({at[name]}{over},"{form}")' for name in ("value", "U")]
-        text = f'"("&{parts[0]}&" ± "&{parts[1]}&"){power}{unit}, k = "&TEXT({at["k"]},"0.00")'
-        text = f"=IF(ISNUMBER({at['value']}),{text},{at['value']})"
+        most, unit = self.report.inputs.uncertainty.digits, behind(self.block.unit)
+        told, decimals, power = (f"$B${row + n}" for n in (1, 2, 3))
+        sure, short = (f"{digits}-1-{_order(at['U'])}" for digits in (SURE, most))
+        near = f"ROUND(ROUND({at['U']},{sure}),{short})"
+        up = f"IF({near}<0.95*{at['U']},ROUNDUP({at['U']},{short}),{near})"
+        rounded_value = f"ROUND({at['value']},{decimals})"
+        size = _order(f"MAX(ABS({rounded_value}),{told})")
+        by, places = value.exponent or 0, len(expanded.fraction) - (expanded.exponent or 0)
+        steps: tuple[tuple[str, str, float, str], ...] = (
+            ("U as it is told", f"IF({at['U']}=0,0,{up})", float(expanded.plain), self.form(budget.expanded)),
+            ("its decimals", f"IF({told}=0,0,{most}-1-{_order(told)})", places, "0"),
+            ("power of ten", f"IF({told}=0,0,IF(OR({decimals}<0,{size}<-{LEADING}),{size},0))", by, "0"),
+        )
+        for line, (name, formula, number, form) in enumerate(steps, start=row):
+            style.text(sheet, line, 0, name, "aside")
+            style.formula(sheet, line, 1, f"={formula}", number, style("step", form))
+        form = f'"0"&IF({decimals}+{power}>0,"."&REPT("0",{decimals}+{power}),"")'
+        parts = [f"TEXT({number}/10^{power},{form})" for number in (rounded_value, told)]
+        written = f'"("&{parts[0]}&" ± "&{parts[1]}&")"&IF({power}=0,"","E"&{power})&"{unit}'
+        text = f'{written}, k = "&TEXT({at["k"]},"0.00")'
+        certain = f'{at["value"]}&"{unit}, U = 0"'
+        formula = f"=IF(ISNUMBER({at['value']}),IF({at['U']}=0,{certain},{text}),{at['value']})"
         plain = [replace(number, exponent=None).plain for number in (value, expanded)]
-        now = f"({plain[0]} ± {plain[1]}){power}{unit}, k = {budget.factor:.2f}"
-        self.style.text(self.sheet, row, 0, "statement", "name")
-        self.style.formula(self.sheet, row, 1, text, now, self.style("text"))
-        return row + 1
+        now = f"({plain[0]} ± {plain[1]}){f'E{by}' if by else ''}{unit}, k = {budget.factor:.2f}"
+        style.text(sheet, row + len(steps), 0, "statement", "name")
+        style.formula(sheet, row + len(steps), 1, formula, now, style("text"))
+        return row + len(steps) + 1
+
+
+def _order(cell: str) -> str:
+    """The power of ten of the first digit of a positive number, in a formula; logarithms are not exact."""
+    return f"INT(LOG10({cell})+1E-9)"

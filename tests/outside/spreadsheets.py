@@ -21,7 +21,6 @@ from loopsheet.report import stages
 from loopsheet.report.cells.grid import Grid, checked
 from loopsheet.report.cells.layout import evenly
 from loopsheet.report.cells.values import CODES, Status, Values
-from loopsheet.report.engines import excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
 from loopsheet.report.engines.excel_formulas import _SETTLED
@@ -31,7 +30,6 @@ from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Column, Given, RepeatAxis, Root, Sheet
 from loopsheet.report.study import Study
-from loopsheet.report.views import xlsx
 
 
 class Error(str):
@@ -139,11 +137,7 @@ def _number(value: Typed, scale: Fraction) -> float:
 def deliver(folder: Path = PAPER, drawn: bool = True) -> Delivered:
     """Compute a folder and make its workbook."""
     report = Study(folder).computed
-    charts = stages.for_a_grid(report) if drawn else None
-    units = {name: shown.unit for name, shown in report.shown.items()}
-    first, words = report.workbook.headline, stages.words_beside(report)
-    grid = excel_grid.grid(report.sheet, report.marks.values, units, first, charts, words)
-    return Delivered(report, grid, xlsx.render(report, grid))
+    return Delivered(report, *stages.book(report, drawn))
 
 
 @cache

@@ -10,6 +10,7 @@ import pytest
 import spreadsheets
 
 from loopsheet.report.inputs.folders import PAPER
+from loopsheet.report.result.uncertain import Decision
 
 DATA = PAPER.parent
 NEAR = 1e-9
@@ -46,12 +47,13 @@ def method(body: str, table: str, parameters: str = "", sources: str = "") -> di
     return {"workbook.py": body, "d.csv": table, "report.toml": report + sources}
 
 
-SUMS = """from sympy import sqrt
+MORE = " whole spread slope middle most"
+SUMS = f"""from sympy import sqrt
 
 from loopsheet import Method, given, let, mean, measured, median, total
 
 
-class Sums(Method, headline="Q whole spread slope middle most"):
+class Sums(Method, headline="Q{MORE}"):
     V = measured("mV", "a voltage", positive=True)
     T = measured("K", "a temperature", positive=True)
     h = given("mm", "a length", positive=True)
@@ -71,6 +73,10 @@ STATED = 'h = "4.0 mm, u = 0.1"\nt = "2.50 ms, u = 0.02"\n'
 BATH = (
     '[uncertainty]\nV = "u = 0.5"\nT = "u = 0.2"\n[uncertainty.shared.bath]\nof = "T"\nstated = "u = 0.3"\n'
     '[uncertainty.shared.gain]\nof = "V"\nstated = "u = 0.1 % of reading"\n'
+)
+LIMITS = (
+    '[limits]\nV = "49 .. 51 mV"\nW = "7.5 .. 9.1 mV^2/K"\nG = "<= 25.6 m^0.5/s"\nh = "3.9 .. 4.2 mm"\n'
+    '[limits.rule]\nguard = "U"\n'
 )
 ROOTS = """from sympy import exp, log, pairs, sin
 
@@ -136,6 +142,17 @@ class Line(Method, headline="level"):
     level = let(mean(reading), "mean of them")
 """
 STEPS = "reading,x [mm],y [V]\n1,1.0,{}\n2,2.0,2.31\n3,3.0,3.29\n4,4.0,4.42\n"
+CERTAIN = '[uncertainty]\nV = "exact"\n'
+SIZES = """from loopsheet import Method, given, let, mean, measured
+
+
+class Sizes(Method, headline="small plain large"):
+    V = measured("mV", "a voltage")
+    h = given("mm", "a length")
+    small = let(h * mean(V) / 1e8, "a hundred millionth")
+    plain = let(h * mean(V), "as it is")
+    large = let(h * mean(V) * 7e6, "millions", "mV*mm")
+"""
 GROUPS = """from loopsheet import Method, count, given, groups, let, mean, measured, total
 
 
@@ -200,6 +217,14 @@ CASES = {
     ),
     "results of groups": Case(INSTRUMENTS, "1.0,1.50", "1.0,1.53", {("y", 0): 1.53}, moves=20),
     "results of groups of fewer": Case(INSTRUMENTS, "B,1.5,2.25", "B,1.5,", {("y", 1): None}, moves=20),
+    "digits of other sizes": Case(
+        method(SIZES, "reading,V [mV]\n1,1.00\n", 'h = "4.17 mm, u = 7 % of reading"\n', CERTAIN),
+        '"4.17', '"0.0128', {("h", 0): 0.0128}, moves=0,
+    ),
+    "limits of what is no result": Case(
+        method(SUMS.replace(MORE, ""), VOLTAGES.format("50.2"), STATED, BATH + LIMITS),
+        '"4.0 mm', '"4.15 mm', {("h", 0): 4.15}, moves=2,
+    ),
     "gum_h1": Case(shipped("gum_h1"), '"-0.1 K', '"-0.7 K', {("theta", 0): -0.7}, moves=1),
 }  # fmt: skip
 
@@ -268,6 +293,17 @@ def test_a_budget_follows_an_edit_as_a_rebuild_does(office: Office, name: str) -
                 assert again == pytest.approx(value, rel=NEAR, abs=least), (result, line)
                 moved += line[1] == "G" and value != pytest.approx(stale[result][line], rel=1e-6)
     assert moved >= CASES[name].moves
+
+
+def test_what_has_limits_is_decided_below_its_budget(office: Office) -> None:
+    """Of inputs, of each row, of what results rest on: also where it is no result."""
+    delivered = office.before["limits of what is no result"]
+    found = budgets(spreadsheets.cells_of(delivered.content)["uncertainty"])
+    decided = {cell: told for cell, lines in found.items() if (told := lines.get(("decision", "B")))}
+    every = delivered.report.uncertain().conformities
+    assert decided == {each.budget.cell: each.decision.value for each in every}
+    assert len(decided) == 10
+    assert set(decided.values()) == set(Decision)
 
 
 def stays(value: Any) -> Any:
