@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, get_args
+from typing import Any
 
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
 from ..cells.grid import (
@@ -33,12 +33,11 @@ from ..column import shown_as
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
 from ..plan.nodes import RootNode
-from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Column, Given, GroupAxis, Sheet
 from .certified import certified
 from .excel import ordered
-from .excel_formulas import Formulas, Places, carried, guard
+from .excel_formulas import Formulas, Places, carried, guard, works_on_ranges
 from .excel_loops import passes_of
 from .excel_roots import Unrolled, unroll
 from .excel_slopes import Slopes
@@ -396,9 +395,8 @@ class Assembly:
 
 
 def _computed(block: CellBlock, filled: tuple[FilledDown, ...]) -> CellBlock:
-    """The block with its formulas; those that work on ranges are array formulas."""
-    taken = (f"{word.upper()}(IF(" for word in get_args(Word))
-    return replace(block, filled=filled, array=any(each in filled[0].first for each in taken))
+    """The block with its formulas."""
+    return replace(block, filled=filled, array=works_on_ranges(filled[0].first))
 
 
 def _counting(unrolled: Unrolled) -> tuple[str, ...]:

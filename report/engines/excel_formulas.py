@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import groupby
 from operator import itemgetter
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,10 @@ from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
 from .excel_values import READY
 
-__all__ = ["Formulas", "Places", "Writing", "carried", "carried_name", "guard"]
+__all__ = ["Formulas", "Places", "Writing", "carried", "carried_name", "guard", "works_on_ranges"]
+
+_ON_RANGES = (*(f"{word.upper()}(IF(" for word in get_args(Word)), "MINVERSE(", "SMALL(")
+"""What works on ranges in formulas: a spreadsheet that is not told so takes the cell of its own row."""
 
 _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
@@ -153,6 +156,11 @@ class Formulas:
         # Of groups there is a number for each, which stands in no single cell.
         axes = (axis for axis in self.sheet.summed_axes(column) if not isinstance(axis, MemberAxis))
         return {axis.name: f"={writing.number_kept(axis.name)}" for axis in axes}
+
+
+def works_on_ranges(formula: str) -> bool:
+    """Whether a formula has to be entered as an array formula."""
+    return any(each in formula for each in _ON_RANGES)
 
 
 def guard(bounds: Bounds) -> str:

@@ -24,7 +24,7 @@ from ..plan.nodes import Leaf, Part, Plan
 from ..plan.slopes import with_unknowns
 from ..sheet import Axis, Column, Given, GroupAxis, Iterated, PairAxis, RepeatAxis, Sheet
 from .excel import ExcelPrinter, ordered
-from .excel_formulas import Formulas, Writing
+from .excel_formulas import Formulas, Writing, works_on_ranges
 from .excel_values import NotPrintable
 from .numpy_texts import program_texts
 
@@ -273,7 +273,7 @@ class _Printing(Writing):
             meaning = f"a share of {quantity.of}" if quantity.share else "a derivative"
         if max(len(each.first) for each in filled) > LONGEST:
             raise NotPrintable(f"the derivative {name} is too long for a formula")
-        array = self.array or any(each in filled[0].first for each in ("SUM(IF(", "MINVERSE(", "SMALL("))
+        array = self.array or works_on_ranges(filled[0].first)
         return CellBlock(name, "slope", title, meaning, self.place, filled, array, ("slope", name))
 
     # --- what stands in formulas

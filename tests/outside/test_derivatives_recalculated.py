@@ -47,7 +47,7 @@ def method(body: str, table: str, parameters: str = "", sources: str = "") -> di
     return {"workbook.py": body, "d.csv": table, "report.toml": report + sources}
 
 
-MORE = " whole spread slope middle most"
+MORE = " whole spread slope middle most peak"
 SUMS = f"""from sympy import sqrt
 
 from loopsheet import Method, given, let, mean, measured, median, total
@@ -67,6 +67,7 @@ class Sums(Method, headline="Q{MORE}"):
     W = let(V**2 / T, "of each row")
     middle = let(median(W), "that in the middle")
     most = let(max(W) - min(W), "the range of them")
+    peak = let(max(V) ** 2 * median(T) / min(T) ** 3, "powers of extremes")
 """
 VOLTAGES = "reading,V [mV],T [K]\n1,{},301.0\n2,52.0,304.5\n3,47.5,299.0\n4,50.25,300.0\n"
 STATED = 'h = "4.0 mm, u = 0.1"\nt = "2.50 ms, u = 0.02"\n'
