@@ -59,7 +59,7 @@ class Material:
             self.latex(column.name),
             self.report.shown[column.name].unit,
             column.meaning,
-            isinstance(column.rule, Given),
+            isinstance(column.rule, Given) and not column.rule.u_of,
             tuple(source for source in sources if source in known),
         )
 

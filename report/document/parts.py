@@ -64,7 +64,7 @@ class Head:
     meaning: str
     """`name`, `latex`, `unit` and `meaning`: as the column's."""
     given: bool
-    """Whether its cells come from the user."""
+    """Whether its cells are typed by the user: uncertainties that are stated with other numbers are not."""
     sources: tuple[str, ...]
     """Labels of the equations it comes from."""
     format: str = "1"

@@ -75,3 +75,52 @@ def test_a_line_with_errors_in_both_variables_is_fitted_anew(
     assert {cell.name for cell in cells} >= {"a", "b", "u_b", "line_at_x"}
     assert driving.differences(cells, again) == []
     assert driving.differences(cells, issued) != []
+
+
+COUNTS = """
+from sympy import exp
+
+from loopsheet import Method, fit, let, measured, uncertainty, unknown
+
+
+class Counts(Method, rows="countings", headline="rate y_mean"):
+    "A source by counting."
+    t = measured("min", "time")
+    N = measured("1", "counts", positive=True)
+    u_N = uncertainty(N)
+    N_0 = unknown("counts at the beginning", "1", start=1000)
+    rate = unknown("decay constant", "1/min", start=0.3)
+    curve = fit(N, N_0 * exp(-rate * t), u=u_N)
+    y = let(u_N / N, "relative uncertainty")
+    y_mean = let(sum(y), "all of them")
+"""
+COUNTED = """\
+counting,t [min],N [1],u(N) [1],left out
+1,0,1012,31.81,
+2,1,790,28.11,
+3,2,651,25.51,
+4,3,508,22.54,hot
+5,4,398,19.95,
+"""
+
+
+def test_stated_uncertainties_that_a_method_names_stand_in_the_page(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    """They are told beside what they are of, and follow what is typed there."""
+    folder = tmp_path / "counts"
+    folder.mkdir()
+    (folder / "workbook.py").write_text(COUNTS, encoding="utf-8")
+    (folder / "m.csv").write_text(COUNTED, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nt = "exact"\n'
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    build(Study(folder), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    assert live.cell("u_N", "2").text == "28.11"
+    assert live.errors == []
+    live.type("N", 3, "700")
+    live.type("N", 1, "1000")
+    live.page.locator('[data-use="4"]').click()
+    saved = live.save(tmp_path / "saved", "workbook.py", file="m.csv")
+    assert live.errors == []
+    assert driving.differences(live.cells(), Study(saved).computed.values) == []
