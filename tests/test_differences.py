@@ -234,6 +234,22 @@ def test_another_warning_about_the_same_numbers_is_a_difference() -> None:
     assert "too large" in as_markdown(found, 20)
 
 
+def test_a_published_uncertainty_that_no_longer_comes_out_is_a_difference(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, u in (("right", "22.5"), ("wrong", "21.5")):
+        folder = shutil.copytree(PAPER.parent / "ea_s2", tmp_path / name)
+        table = (folder / "published.csv").read_text(encoding="utf-8")
+        assert table.count(",22.5,") == 1
+        (folder / "published.csv").write_text(table.replace(",22.5,", f",{u},"), encoding="utf-8")
+        assert main(["build", str(folder), "--to", "json"]) == (name == "wrong")
+    capsys.readouterr()
+    assert main(["diff", str(tmp_path / "right"), str(tmp_path / "wrong")]) == 1
+    told = capsys.readouterr().out
+    assert "published  S2.12 u(m_X, m_S): 22.5: same\n" in told
+    assert "-> 21.5: differs" in told
+
+
 def test_a_limit_that_was_moved_is_a_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, limit, found in (("wide", "50.0010", 0), ("narrow", "50.0008", 1)):
         shutil.copytree(PAPER.parent / "gum_h1", tmp_path / name)

@@ -204,7 +204,7 @@ def _verdicts(result: Result) -> dict[str, str]:
     """Of each published value, as ``Table 2 alpha[1-2]``, what it prints and the verdict on it."""
     return {
         f"{each.source} {address(each.cell, each.index)}": f"{each.printed}: {each.verdict}"
-        for each in result.published
+        for each in (*result.published, *(() if result.published_u is UNSET else result.published_u))
     }
 
 

@@ -426,6 +426,9 @@ class Result(Form, frozen=True, kw_only=True):
         What each proved equation finally rests on.
     errata : list of Erratum
     published : list of Published
+    published_u : list of Published
+        The same of uncertainties and what else is published of how sure a value is, as ``u(eta)``. Missing
+        where nothing is.
     influences : Influences
         Missing where nothing is known of them.
     referee : Referee
@@ -445,6 +448,7 @@ class Result(Form, frozen=True, kw_only=True):
     rests_on: dict[Text, list[Text]] = field(default_factory=dict)
     errata: list[Erratum] = field(default_factory=list)
     published: list[Published]
+    published_u: list[Published] | UnsetType = UNSET
     influences: Influences | UnsetType = UNSET
     referee: Referee | UnsetType = UNSET
 

@@ -59,6 +59,7 @@ def values(report: Report) -> str:
             rests_on=proof_grounds(report),
             errata=[alike(erratum, form.Erratum) for erratum in report.errata],
             published=[_published(comparison) for comparison in report.comparisons],
+            published_u=[_published(comparison) for comparison in report.comparisons_u] or UNSET,
             influences=_influences(report),
             referee=UNSET if report.referee.joint is None else verdict_data.data(report.referee),
         )
