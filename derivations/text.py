@@ -33,7 +33,7 @@ from .equation import Equation
 from .reductions import OrderStatistic, member_of, taken_of
 from .vocabulary import Vocabulary, subscripted
 
-__all__ = ["Wording", "text", "text_of_equation"]
+__all__ = ["Wording", "flat", "text", "text_of_equation"]
 
 _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 """How tightly an expression holds together; a looser one gets parentheses inside a tighter one."""
@@ -138,7 +138,7 @@ class Wording:
 
     def _sum(self, expression: Add) -> str:
         written = ""
-        for term in _flat(expression, Add):
+        for term in flat(expression, Add):
             part = self._inside(term, _PRODUCT) if not isinstance(term, Number) else self.text(term)
             negative = part.startswith("-")
             part = part.removeprefix("-")
@@ -150,7 +150,7 @@ class Wording:
 
     def _product(self, expression: Mul) -> tuple[str, int]:
         """Factors from left to right; what has a negative power is divided by."""
-        factors = [factor for factor in _flat(expression, Mul) if factor != 1]
+        factors = [factor for factor in flat(expression, Mul) if factor != 1]
         sign = ""
         while factors and factors[0] == -1:
             sign = "" if sign else "-"
@@ -192,11 +192,11 @@ class Wording:
         return " and ".join(map(self.text, expression.args))
 
 
-def _flat(expression: Any, kind: type[Basic]) -> list[Any]:
+def flat(expression: Any, kind: type[Basic]) -> list[Any]:
     """The parts of nested sums or nested products, from left to right."""
     if not isinstance(expression, kind):
         return [expression]
-    return [part for argument in expression.args for part in _flat(argument, kind)]
+    return [part for argument in expression.args for part in flat(argument, kind)]
 
 
 def _is_reciprocal(factor: Any) -> bool:

@@ -150,6 +150,11 @@ class _Resting(Axis):
         """The axis that is paired, repeated or grouped."""
         return (self.of,)
 
+    @property
+    def named(self) -> dict[str, Axis]:
+        """What it maps, by what the indices are called."""
+        return {self.index_name: self, **self.of.named}
+
 
 @dataclass(frozen=True)
 class PairAxis(_Resting):
@@ -216,11 +221,6 @@ class RepeatAxis(_Resting):
     def step_name(self) -> str:
         """What the running number is called."""
         return str(self.step.name)
-
-    @property
-    def named(self) -> dict[str, Axis]:
-        """The same by what the indices are called."""
-        return {self.index_name: self, **self.of.named}
 
     @property
     def ordinals(self) -> tuple[Symbol, ...]:
@@ -296,11 +296,6 @@ class MemberAxis(_Resting):
     def group_name(self) -> str:
         """What the index of the groups is called."""
         return str(self.group.name)
-
-    @property
-    def named(self) -> dict[str, Axis]:
-        """The same as what it maps, by what the indices are called."""
-        return {self.index_name: self, **self.of.named}
 
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:

@@ -55,6 +55,13 @@ class _ToldLimit:
     mentioned: Mentioned
 
 
+_SAME = (
+    "name", "unit", "meaning", "latex", "display", "positive", "nonnegative", "exact", "is_u", "spare",
+    "source", "conditions",
+)  # fmt: skip
+"""What a column says, and what is told of it, alike."""
+
+
 @dataclass(frozen=True)
 class _ToldColumn:
     """What a column says; `given` if it is, and of a root or a loop what there is to say of its cells."""
@@ -216,16 +223,18 @@ def _column(
         )
         for own in column.limits
     )
-    alongside = tuple(other.name for other in column.alongside)
     return _ToldColumn(
-        column.name, None if column.axis is None else column.axis.name, column.unit, column.meaning,
-        column.latex, column.display, column.positive, column.nonnegative, column.exact, column.is_u,
-        column.spare, column.source, column.conditions, _mentioned(sheet, column), tuple(limits), alongside,
-        asdict(rule) if isinstance(rule, Given) else None,
-        tuple(told_equation(each, *writing) for each in equations) if writing else (), place,
-        (rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
-        rule.none if isinstance(rule, Iterated) else None,
-    )  # fmt: skip
+        **{name: getattr(column, name) for name in _SAME},
+        axis=None if column.axis is None else column.axis.name,
+        mentioned=_mentioned(sheet, column),
+        limits=tuple(limits),
+        alongside=tuple(other.name for other in column.alongside),
+        given=asdict(rule) if isinstance(rule, Given) else None,
+        equations=tuple(told_equation(each, *writing) for each in equations) if writing else (),
+        placed=place,
+        root=(rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
+        iterated=rule.none if isinstance(rule, Iterated) else None,
+    )
 
 
 # --- the same again --------------------------------------------------------------------------------------
@@ -264,24 +273,7 @@ class _Known:
             return self.declared()[told.name]
 
         limits = tuple(self.limit(each, n, whole) for n, each in enumerate(told.limits))
-        known: dict[str, Any] = {
-            name: getattr(told, name)
-            for name in (
-                "name",
-                "unit",
-                "meaning",
-                "latex",
-                "display",
-                "positive",
-                "nonnegative",
-                "exact",
-                "is_u",
-                "spare",
-                "source",
-                "conditions",
-                "mentioned",
-            )
-        }
+        known: dict[str, Any] = {name: getattr(told, name) for name in (*_SAME, "mentioned")}
         known |= {"axis": self.axes[told.axis] if told.axis else None, "limits": limits}
         known |= {"content": told.mentioned.content, "rule": self.rule(told, whole)}
         known |= {"placed": told.placed}

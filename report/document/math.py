@@ -35,6 +35,7 @@ from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
 from ...derivations.reductions import OrderStatistic, member_of, taken_of
+from ...derivations.text import flat
 from ..named import name_of
 from .names import Terms, join, name_latex
 
@@ -92,7 +93,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
 
     def terms(self, expr: Expr) -> Terms:
         """The terms of a sum, each with whether it is subtracted."""
-        summands = _summands(expr)
+        summands = flat(expr, Add)
         if len(summands) == 1 and isinstance(expr, Piecewise):
             return [(False, self._print(expr))]
         parts = [self._signed(term) for term in summands]
@@ -345,13 +346,6 @@ def _canonical(expr: Expr) -> bool:
     if any(isinstance(argument, expr.func) for argument in expr.args):
         return False
     return bool(expr.func(*expr.args).args == expr.args)
-
-
-def _summands(expr: Expr) -> list[Expr]:
-    """The terms of nested sums, in order."""
-    if not isinstance(expr, Add):
-        return [expr]
-    return [term for argument in expr.args for term in _summands(argument)]
 
 
 def _factors(expr: Expr) -> list[Expr]:

@@ -17,6 +17,7 @@ from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
+from ..messages.errors import listing
 from ..quantity import behind
 from ..result.chi_square import RARE, freedom, head, tail, tied
 from ..result.numbers import probability, rounded
@@ -615,4 +616,4 @@ def _some(parts: Sequence[str]) -> str:
     ('a', 'a, b and c', 'a, b, c, d, e, f and 2 more')
     """
     shown = [*parts[:MOST], *([f"{len(parts) - MOST} more"] if len(parts) > MOST else [])]
-    return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))
+    return listing(shown, most=MOST + 1, last="and")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...derivations.contact.models import LEDGER, MODELS
 from ...derivations.contact.prescribed import AUTHORS
+from ...derivations.proved import enumerated
 from ..messages.errors import sentence_case
 from ..quantity import POISSON, Bounds
 from ..workbook import FigureSpec, Parameter, SquareSum, TableSpec, Workbook
@@ -194,18 +195,14 @@ def _equations(model: ContactModel) -> str:
     """What it assumes, and the numbers of the equations by which it predicts."""
     of = {each.defines or each.sides[0]: each.label for each in model.cells}
     told = [f"{_TOLD[name]} {{eq}}`{of[symbol]}`" for name, symbol in model.predicts.items() if symbol in of]
-    said = f"**{sentence_case(model.title)}**: {model.assumes}. Equations: {_listed(told)}."
+    said = f"**{sentence_case(model.title)}**: {model.assumes}. Equations: {enumerated(told)}."
     if constant := model.constant:
-        alone = _listed([f"{{eq}}`{each.label}`" for each in constant.of_test])
+        alone = enumerated([f"{{eq}}`{each.label}`" for each in constant.of_test])
         said += f" Its constant: of each test {alone}, of all {{eq}}`{constant.mean.label}`"
         said += f", of all others {{eq}}`{constant.without.label}`."
     for symbol in model.left_out.values():
         said += f" By all other tests: {{eq}}`{of[symbol]}`."
     return said
-
-
-def _listed(texts: list[str]) -> str:
-    return " and ".join((", ".join(texts[:-1]), texts[-1])) if len(texts) > 1 else texts[0]
 
 
 def _squares() -> Iterator[SquareSum]:

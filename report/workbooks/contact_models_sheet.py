@@ -17,8 +17,8 @@ from ...derivations.symbols import k
 from ..charts import Drawn, drawn
 from ..named import name_of
 from ..sheet import Column, Formula, Given, Limit, RepeatAxis, Root, Sheet
-from . import soft_impact_fit
-from .soft_impact_sheet import TESTS, beta, e, masses, v, x_p
+from . import soft_impact
+from .soft_impact_sheet import TESTS, beta, e, masses, of_sheet, v, x_p
 
 __all__ = ["branches", "constants", "sheet"]
 
@@ -47,7 +47,9 @@ def sheet(given: frozenset[str]) -> Sheet:
     whether first yield is told.
     """
     laid = _Laid()
-    fitted = soft_impact_fit.columns(TESTS, (v, e, x_p))
+    own = frozenset({"ball_mass"})
+    names = [column.name for column in soft_impact.sheet(own).columns]
+    fitted = of_sheet(own, *names[names.index("u_v") :])
     told = {equation.label for equation in LEDGER.equations()}
     for column in (v, e, x_p, beta, *masses(given), *fitted):
         if column.equation is None or column.equation.label in told:
