@@ -210,3 +210,29 @@ def test_what_is_off_by_a_power_of_ten_is_told_so(tmp_path: Path, published: str
     assert said.startswith(f"H.1 l[1] prints {published.partition(',')[0]}, recomputed ")
     assert times in said
     assert (" times as " in said) == bool(times)
+
+
+@pytest.mark.parametrize(
+    ("published", "hint"),
+    [
+        ("21.50,K", ", perhaps printed in K for degC, or the reverse ("),
+        ("294.65,degC", ", perhaps printed in K for degC, or the reverse ("),
+        ("21.60,degC", "recomputed 21.50 ("),
+        ("290.00,K", "recomputed 294.65 ("),
+        ("29.465,K", ", about 10 times as large, perhaps"),
+    ],
+)
+def test_a_temperature_in_the_other_unit_is_told_so(tmp_path: Path, published: str, hint: str) -> None:
+    (tmp_path / "workbook.py").write_text(
+        "from loopsheet import Method, let, mean, measured\n\n\n"
+        'class Bath(Method):\n    T = measured("degC", "bath")\n    T_m = let(mean(T), "its mean", "degC")\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "d.csv").write_text("T [degC]\n21.4\n21.6\n", encoding="utf-8")
+    (tmp_path / "report.toml").write_text(
+        'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n[published]\nfile = "p.csv"\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "p.csv").write_text(f"source,cell,index,value,unit\nA,T_m,,{published}\n", encoding="utf-8")
+    (said,) = (c.message for c in checks(Study(tmp_path).computed) if c.kind == "published")
+    assert hint in said

@@ -396,7 +396,7 @@ def match_columns(
             told = list(dict.fromkeys(own.get(word, word) for word in known))
             missing = [own.get(word, word) for word in known if word not in names]
             meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
-            suggestion = for_left_out(name) or suggest(name, missing) or suggest(name, told)
+            suggestion = for_left_out(name) or suggest(name, missing) or _like(name, told)
             if not suggestion and len(strange) == len(renamed) == 1:
                 suggestion = f"'{renamed[0]}' is missing: did you mean that?"
                 meant[renamed[0]] += 1
@@ -407,6 +407,13 @@ def match_columns(
     instead = f", or write it in the place of {others}" * are_words
     without(table, findings, {name: required[name] for name in lacking}, instead)
     return places
+
+
+def _like(name: str, there: Sequence[str]) -> str:
+    near = close(name, there)
+    return (
+        f"did you mean '{near}', which is there? if it has words, give it a name less alike" if near else ""
+    )
 
 
 def without(table: CsvTable, findings: Findings, examples: Mapping[str, str], instead: str = "") -> None:

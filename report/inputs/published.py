@@ -29,7 +29,8 @@ _OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.requi
 COLUMNS = (*_REQUIRED, *_OPTIONAL)
 _AS_DATE = "a spreadsheet may have turned 1-2 into a date: format the column as text"
 _AS_WORD = (
-    "a row stands by its number here, or by its word in the table, which 'loopsheet show {} FOLDER' lists"
+    "no row is called so; one stands by its number here, or by its word in the table, which "
+    "'loopsheet show {} FOLDER' lists"
 )
 _DATE = re.compile(r"^[0-9]|[0-9][-./ ]|[-./ ][0-9]")
 _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")

@@ -471,5 +471,5 @@ def _scale(text: str, start: int, unit: ParsedUnit) -> Fraction:
     except UnitError as error:
         raise StatementError("LS431", error.text, start + error.start, error.suggestion) from None
     if found.dimension != unit.dimension:
-        raise StatementError("LS431", text, start, f"its unit converts to {unit.text}")
+        raise StatementError("LS431", text, start, f"write a unit that converts to {unit.text}")
     return found.scale

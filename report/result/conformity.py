@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ..distribution import Shape
 from ..messages.errors import sentence_case
 from ..quantity import behind, span
 from .numbers import chance
@@ -71,7 +73,12 @@ def risk(found: Conformity) -> str:
 
 def _chance(found: Conformity, probability: float, other: float) -> str:
     """With as many digits as draws tell, where draws told it."""
-    return "" if math.isnan(probability) else chance(probability, other, 1 if found.budget.draws else 2)
+    if math.isnan(probability):
+        return ""
+    if found.budget.u and found.budget.shape in (Shape.NORMAL, Shape.STUDENT):
+        # Without bounds nothing is certain, but to doubles.
+        probability, other = max(probability, sys.float_info.min), max(other, sys.float_info.min)
+    return chance(probability, other, 1 if found.budget.draws else 2)
 
 
 def _rule(report: Report, found: Conformity) -> str:

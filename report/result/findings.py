@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from ...derivations.unit_text import parse_unit
 from ..cells.address import address
 from ..messages.diagnostics import Check, Diagnostic, Location
 from . import verdict_words as words
@@ -44,6 +45,8 @@ CONFORMITY = "conformity"
 """The kind of the checks of limits."""
 NEAR_A_POWER = 0.05
 """So far from a power of ten, as a share of it, the ratio of recomputed and published may be."""
+NEAR_THE_ZERO = 0.5
+"""So far, in kelvins, from the zero of degC a difference of temperatures may be that comes from it."""
 PLAIN = 6
 """Up to this exponent powers of ten are written out."""
 MOST_NAMED = 5
@@ -115,11 +118,15 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 
 
 def _misplaced(comparison: Comparison) -> str:
-    """What a value that is not as expected and off by about a power of ten may be due to; else empty."""
+    """What one that is not as expected, and off by a power of ten or the zero of degC, may be due to."""
     cell, printed = comparison.cell, comparison.published.printed
     if comparison.as_expected or cell.value is None or not printed.number:
         return ""
-    ratio = printed.of(cell.value) / float(printed.number)
+    here, there = printed.of(cell.value), float(printed.number)
+    is_temperature = printed.unit in ("K", "degC", "°C")
+    if is_temperature and abs(abs(here - there) - float(parse_unit("degC").zero)) < NEAR_THE_ZERO:
+        return ", perhaps printed in K for degC, or the reverse"
+    ratio = here / there
     if not 0 < ratio < math.inf:
         return ""
     power = round(math.log10(ratio))

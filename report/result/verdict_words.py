@@ -308,10 +308,13 @@ def why(found: Referee) -> tuple[str, ...]:
 
 def tried(found: Tried) -> str:
     """How many changes were tried, and what became of them."""
-    number = found.explaining + found.excluded + found.open
+    explaining, excluded, left = found.explaining, found.excluded, found.open
+    number = explaining + excluded + left
     return (
-        f"{number} changes were tried: {found.explaining} explain it, {found.excluded} certainly do not, "
-        f"{found.open} were searched for in vain, which is not certain"
+        f"{number} {'change was' if number == 1 else 'changes were'} tried: "
+        f"{explaining} {'explains' if explaining == 1 else 'explain'} it, "
+        f"{excluded} certainly {'does' if excluded == 1 else 'do'} not, "
+        f"{left} {'was' if left == 1 else 'were'} searched for in vain, which is not certain"
     )
 
 
