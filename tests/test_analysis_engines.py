@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
+import re
 import sys
+import zipfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +16,7 @@ import engine_cases
 import mpmath
 import pytest
 
+from loopsheet.report import stages
 from loopsheet.report.cells.grid import Place, checked
 from loopsheet.report.cells.values import Values
 from loopsheet.report.engines import ENGINES, exact, excel_grid
@@ -214,6 +218,28 @@ def test_an_office_that_makes_no_file_is_a_finding(
     program.chmod(0o755)
     monkeypatch.setattr(readers, "_find", lambda *names: ("soffice", str(program)))
     assert readers.run_workbook(Case(prepared.sheet, {}, {}, book=book)).failure == "made no file"
+
+
+def test_a_budget_that_comes_out_otherwise_is_a_finding(require: Callable[..., str]) -> None:
+    """Sensitivities are no cells of the sheet: what is made of them has to be as it was issued."""
+    require("soffice", "libreoffice")
+    report = Study(PAPER.parent / "gum_h1").computed
+    grid, content = stages.book(report)
+    wrong = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(wrong, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, re.sub(rb"<f>D(\d+)\*G\1</f>", rb"<f>2*D\1*G\1</f>", old.read(name), count=1))
+    right, other = (
+        readers.run_workbook(Case(report.sheet, {}, {}, book=Book(each, grid)))
+        for each in (content, wrong.getvalue())
+    )
+    assert right is not None
+    assert other is not None
+    assert (right.failure, right.beside) == ("", ())
+    assert {said.partition(" in ")[2].partition(",")[0][:13] for said in other.beside} == {
+        "uncertainty!B",
+        "uncertainty!I",
+    }
 
 
 # --- files ------------------------------------------------------------------------------------------------

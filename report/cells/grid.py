@@ -17,6 +17,7 @@ from ..quantity import Bounds
 from ..sheet import Axis
 
 __all__ = [
+    "BUDGETS",
     "CHECKED",
     "FIRST_ROW",
     "LONGEST",
@@ -47,6 +48,8 @@ STEPS = "steps"
 """The worksheet of the steps to a scalar root."""
 SLOPES = "derivatives"
 """The worksheet of derivatives that are one number."""
+BUDGETS = "uncertainty"
+"""The worksheet of budgets."""
 
 
 _READ = 15

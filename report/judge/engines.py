@@ -88,6 +88,7 @@ class Judge:
         with mpmath.workdps(exact.DIGITS):
             for column in self.sheet.order:
                 self._column(column, reading, tally)
+        tally.findings += reading.beside
         more = len(tally.findings) - MOST_FINDINGS
         findings = tally.findings[:MOST_FINDINGS]
         if more > 0:

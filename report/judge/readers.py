@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from ..cells.grid import Grid, checked
+from ..cells.grid import BUDGETS, Grid, checked
 from ..cells.values import CODES, Status, Values
 from ..machine.programs import ProgramFailed, run
 from ..machine.scratch import scratch
@@ -43,6 +43,11 @@ BOOK_SECONDS = 300
 
 STORED_DIGITS = 15
 """Significant digits of a number in a file that LibreOffice writes, whichever format it is."""
+
+BUDGETED, SHARES = ("standard uncertainty u", "expanded uncertainty U"), "I"
+"""The lines of a budget, and the column of it, that are compared with what was issued."""
+SURELY = 1e-3
+"""How near they have to be: u has two digits, and how much of them rounding takes nobody knows."""
 
 OK = CODES[Status.OK]
 _SHOWN = 300
@@ -93,6 +98,8 @@ class Reading:
     rounded: Mapping[str, Sequence[Fraction]] = field(default_factory=dict)
     """By column name; how much of each number the engine's file may have lost, in SI; empty if it keeps all
     digits."""
+    beside: tuple[str, ...] = ()
+    """What of the budgets it has otherwise than they were issued."""
 
 
 def of_values(values: Values, engine: str = "numpy") -> Reading:
@@ -239,11 +246,13 @@ def run_workbook(case: Case) -> Reading | None:
     try:
         cells = _recalculated(found[1], book.content)
         value, status, rounded = _columns(case.sheet, book.grid, cells)
+        issued = read_cells(book.content, BUDGETS).get(BUDGETS, {})
+        beside = tuple(_unlike(issued, cells.get(BUDGETS, {})))
     except ProgramFailed as failed:
         return Reading("xlsx", program, failure=str(failed))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile, ElementTree.ParseError) as error:
         return Reading("xlsx", program, failure=f"its file cannot be read: {error!r}"[:_SHOWN])
-    return Reading("xlsx", program, value, status, rounded=rounded)
+    return Reading("xlsx", program, value, status, rounded=rounded, beside=beside)
 
 
 def _recalculated(soffice: str, content: bytes) -> dict[str, dict[str, float | str]]:
@@ -274,8 +283,21 @@ def without_results(content: bytes) -> bytes:
     return buffer.getvalue()
 
 
-def read_cells(content: bytes) -> dict[str, dict[str, float | str]]:
+def _unlike(issued: Mapping[str, float | str], found: Mapping[str, float | str]) -> Iterator[str]:
+    """What of budgets was computed otherwise than it was issued: u, U, and shares of the variance."""
+    for at, was in issued.items():
+        named = at[0] == "B" and issued.get(f"A{at[1:]}") in BUDGETED
+        if isinstance(was, float) and (named or at[0] == SHARES):
+            now = found.get(at, "nothing")
+            least = 0.0 if named else SURELY
+            if not (isinstance(now, float) and math.isclose(now, was, rel_tol=SURELY, abs_tol=least)):
+                yield f"xlsx has {now} in {BUDGETS}!{at}, where {was:.4g} was issued"
+
+
+def read_cells(content: bytes, only: str = "") -> dict[str, dict[str, float | str]]:
     """Every cell of a workbook that holds something: a number, or its text; an error's name is a text.
+
+    `only`: the worksheet that is read; all of them without it.
 
     Returns
     -------
@@ -292,6 +314,8 @@ def read_cells(content: bytes) -> dict[str, dict[str, float | str]]:
             shared = ["".join(t.text or "" for t in item.iter(f"{_MAIN}t")) for item in table]
         found: dict[str, dict[str, float | str]] = {}
         for entry in ElementTree.fromstring(archive.read("xl/workbook.xml")).iter(f"{_MAIN}sheet"):
+            if only not in ("", entry.get("name")):
+                continue
             target = parts[entry.get(_RELATION)]
             path = target.removeprefix("/") if target.startswith("/") else f"xl/{target}"
             worksheet = ElementTree.fromstring(archive.read(path))

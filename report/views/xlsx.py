@@ -14,7 +14,7 @@ from typing import Any
 
 from xlsxwriter import Workbook as Book
 
-from ..cells.grid import SCALARS, SLOPES, STEPS, Grid
+from ..cells.grid import BUDGETS, SCALARS, SLOPES, STEPS, Grid
 from ..machine.staging import put
 from ..result.result import Report
 from .issued import Issued
@@ -32,7 +32,7 @@ __all__ = ["render", "write"]
 
 _CREATED = datetime(2000, 1, 1)
 """No clock: the same bytes for the same report."""
-_FIGURES, _PUBLISHED, _UNCERTAINTY = "figures", "published", "uncertainty"
+_FIGURES, _PUBLISHED = "figures", "published"
 _CARDS, _EQUATIONS = "cards", "equations"
 
 
@@ -66,7 +66,7 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names = [SCALARS, *([_FIGURES] if charted(report, grid) else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
     names += [_PUBLISHED] if report.comparisons else []
-    names += [_UNCERTAINTY] if told_budgets(report) else []
+    names += [BUDGETS] if told_budgets(report) else []
     names += [SLOPES] if grid.on(SLOPES) else []
     names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}
@@ -77,8 +77,8 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
         write_steps(sheets[STEPS], style, report, grid)
     if _PUBLISHED in sheets:
         write_published(sheets[_PUBLISHED], style, report, grid)
-    if _UNCERTAINTY in sheets:
-        write_budgets(sheets[_UNCERTAINTY], style, report, grid)
+    if BUDGETS in sheets:
+        write_budgets(sheets[BUDGETS], style, report, grid)
     if SLOPES in sheets:
         write_slopes(sheets[SLOPES], style, grid)
     if _CARDS in sheets:
