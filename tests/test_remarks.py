@@ -180,6 +180,7 @@ def test_the_words_of_a_row_that_is_left_out_stand_with_it(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
+        ("operator", "T_", "unknown column 'T_'"),
         ("operator", "T_", "did you mean 'T', which is there? if it has words, give it a name less alike"),
         ("operator", "readings", "unknown column 'readings'"),
         ("operator", "left-out", "unknown column 'left-out'"),

@@ -410,10 +410,8 @@ def match_columns(
 
 
 def _like(name: str, there: Sequence[str]) -> str:
-    near = close(name, there)
-    return (
-        f"did you mean '{near}', which is there? if it has words, give it a name less alike" if near else ""
-    )
+    said = suggest(name, there).removesuffix("?")
+    return said and f"{said}, which is there? if it has words, give it a name less alike"
 
 
 def without(table: CsvTable, findings: Findings, examples: Mapping[str, str], instead: str = "") -> None:
