@@ -9,14 +9,17 @@ from statistics import mean, stdev
 
 import pytest
 from small_report import found, pure
-from sympy import Sum, Symbol
+from sympy import Sum, Symbol, sin
 
 from loopsheet.derivations.equation import Equation, Kind
+from loopsheet.derivations.unit_text import parse_unit
+from loopsheet.report.distribution import Error
 from loopsheet.report.inputs.published import Pin, PublishedValue
+from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import certificate, misprints, search
 from loopsheet.report.referee.scales import shifted
 from loopsheet.report.result import verdict_words as words
-from loopsheet.report.result.verdict import REACHABLE, Change, Explanation, Referee
+from loopsheet.report.result.verdict import REACHABLE, WITHIN, Change, Explanation, Referee
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Sheet
 from loopsheet.report.study import Study
 
@@ -73,7 +76,7 @@ def test_computed_from_what_is_printed_accuses_nobody() -> None:
 
 @pytest.mark.parametrize(
     ("mean", "rows"),
-    [("6.333", "without 4"), ("24.600", "with 4 twice"), ("22.333", "without 2")],
+    [("6.333", "without test 4"), ("24.600", "with test 4 twice"), ("22.333", "without test 2")],
 )
 def test_a_mean_over_other_rows(mean: str, rows: str) -> None:
     """The mean of 1, 4, 14 and 52 is 17.75."""
@@ -92,6 +95,109 @@ def test_a_unit_off_by_a_power_of_ten(x: str, square: str, cell: str) -> None:
     of = said(x, square=square)
     assert changes(of)[0] == [("unit", cell, (), "")]
     assert first(of).power == -3
+
+
+@pytest.mark.parametrize(
+    ("x", "square", "cell", "factor"),
+    [
+        ("1.200 2.300 3.100", "2.880 10.580 19.220", "square", "1/2"),
+        ("1.200 2.300 3.100", "0.7200 2.6450 4.8050", "square", "2"),
+        ("1.200 2.300 3.100", "5.760 21.160 38.440", "x", "2"),
+    ],
+)
+def test_a_radius_for_a_diameter(x: str, square: str, cell: str, factor: str) -> None:
+    of = said(x, square=square)
+    assert changes(of) == [[("factor", cell, (), factor)]]
+    source = " of Table" if cell == "square" else ""
+    assert words.claimed(first(of)) == f"the numbers of {cell}{source} are to be multiplied by {factor}"
+
+
+def printed_in(unit: str, text: str) -> Printed:
+    size = parse_unit(unit)
+    return Printed(text, unit, Fraction(text) * size.scale, size.scale)
+
+
+@pytest.mark.parametrize(
+    ("x_unit", "squares_unit", "squares", "claim"),
+    [
+        ("deg", "1", "1.440 5.290 9.610", "the numbers of x were taken in rad, not in deg"),
+        ("rad", "1", "4.386e-4 1.6114e-3 2.9274e-3", "the numbers of x were taken in deg, not in rad"),
+        ("1", "deg", "1.440 5.290 9.610", "the numbers of square of Table are in rad, not in deg"),
+        ("1", "min", "1.440 5.290 9.610", "the numbers of square of Table are in s, not in min"),
+    ],
+)
+def test_numbers_in_another_unit_of_the_kind(
+    x_unit: str, squares_unit: str, squares: str, claim: str
+) -> None:
+    x = [printed_in(x_unit, text) for text in ("1.200", "2.300", "3.100")]
+    cells = [
+        PublishedValue("Table", "square", (row,), printed_in(squares_unit, text))
+        for row, text in enumerate(squares.split(), 1)
+    ]
+    of = found(SHEET, {"x": x}, cells)
+    assert [words.claimed(each.first) for each in of.explanations] == [claim]
+    assert words.holds(claim, of.explanations)
+
+
+def test_a_calculator_in_radians_spares_no_angle() -> None:
+    """The sines of 15, 30 and 45 rad over those of 9.9, 19.5 and 28.1 rad."""
+    y = Column("y", ROWS, Given(), positive=False)
+    index = Column("index", ROWS, formula("index", sin(X[k]) / sin(y[k])), positive=False)
+    given = {"x": ("15.0", "30.0", "45.0"), "y": ("9.9", "19.5", "28.1")}
+    cells = [
+        PublishedValue("Table", "index", (row,), pure(text))
+        for row, text in enumerate(("-1.4213", "-1.6317", "4.9057"), 1)
+    ]
+    degrees = {name: [printed_in("deg", text) for text in texts] for name, texts in given.items()}
+    of = found(Sheet((X, y, index)), degrees, cells)
+    assert [words.claimed(each.first) for each in of.explanations] == [
+        "all that is given in deg was taken in rad"
+    ]
+    assert words.suggested(of.explanations[0]) == "may be in rad, not in deg"
+
+
+def test_several_columns_in_another_unit_are_said_together() -> None:
+    """No two misprints explain six numbers."""
+    of = said("1.200 2.300 3.100", square="1440 5290 9610", tenfold="28.80 105.80 192.20")
+    assert changes(of) == [[("unit", "square", (), ""), ("factor", "tenfold", (), "1/2")]]
+    assert of.explanations[0].count == 2
+
+
+def test_two_rows_of_a_table_that_changed_places() -> None:
+    of = said("1.200 2.300 3.100", square="5.290 1.440 9.610", tenfold="52.90 14.40 96.10")
+    rows, given = of.explanations[1], of.explanations[0]
+    assert [(each.kind, each.cell) for each in given.changes] == [("label", "x")]  # or those of x did
+    assert rows.changes == (Change("label", "", (1,), "Table", "", "", other=(2,)),)
+    assert words.claimed(rows.first) == "rows 1 and 2 of Table stand in each other's place"
+    assert words.suggested(rows) == "rows 1 and 2 may have changed places"
+
+
+@pytest.mark.parametrize(
+    ("published", "perhaps"),
+    [
+        (
+            {"square": "1.440 5.524 5.290 9.610"},
+            "square[2] and square[3] of Table stand in each other's place (5.524 and 5.290)",
+        ),
+        (
+            {"square": "1.440 5.524 5.290 9.610", "tenfold": "14.40 55.24 52.90 96.10"},
+            "rows 2 and 3 of Table stand in each other's place",
+        ),
+    ],
+)
+def test_within_uncertainty_an_exchange_is_a_possibility(published: dict[str, str], perhaps: str) -> None:
+    """The squares of 2.30 and 2.3503 are nearer to each other than u = 0.05 of a side says."""
+    u = Error(Fraction("0.05"), said="u = 0.05")
+    x = [replace(pure(text), stated=(u,)) for text in ("1.200", "2.3000", "2.3503", "3.100")]
+    cells = [
+        PublishedValue("Table", name, (row,), pure(text))
+        for name, line in published.items()
+        for row, text in enumerate(line.split(), 1)
+    ]
+    of = found(SHEET, {"x": x}, cells)
+    assert of.joint is not None
+    assert (of.joint.verdict, of.explanations) == (WITHIN, ())
+    assert perhaps in [words.claimed(each.first) for each in of.slips]
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -14,14 +15,14 @@ from .minimax import best
 from .problem import Box, Problem
 from .search import Explained, Search
 
-__all__ = ["columns", "exchanged_in_tables", "exchanged_inputs", "orders"]
+__all__ = ["columns", "exchanged_in_tables", "exchanged_inputs", "exchanged_rows", "orders"]
 
 
 def exchanged_in_tables(search: Search) -> Iterator[Explained]:
     """Two published values of a column that stand in each other's place."""
     published = search.problem.published
     for members in search.groups.values():
-        for n, m in _pairs(members):
+        for n, m in combinations(members, 2):
             one, other = published[n], published[m]
             if one.printed.text == other.printed.text or not search.worth({n, m}):
                 continue
@@ -33,11 +34,33 @@ def exchanged_in_tables(search: Search) -> Iterator[Explained]:
                 yield search.explained([change], changed, changed.box, now)
 
 
+def exchanged_rows(search: Search) -> Iterator[Explained]:
+    """Two rows of a table that stand in each other's place, in all of its columns."""
+    problem, tables = search.problem, dict[tuple[str, str], dict[tuple[int, ...], dict[str, int]]]()
+    for (source, cell), members in search.groups.items():
+        if (axis := problem.campaign.sheet[cell].axis) is not None:
+            rows = tables.setdefault((source, axis.name), {})
+            for n in members:
+                rows.setdefault(problem.published[n].index, {})[cell] = n
+    asked, changes = list[tuple[Problem, Box | None]](), list[Change]()
+    for (source, _), rows in tables.items():
+        for one, other in combinations(rows, 2):
+            pairs = [(rows[one][cell], rows[other][cell]) for cell in rows[one] if cell in rows[other]]
+            prints = {n: problem.published[m].printed for pair in pairs for n, m in (pair, pair[::-1])}
+            moved = [n for n, print_ in prints.items() if print_.text != problem.published[n].printed.text]
+            if len(moved) > 2 and search.worth(moved):  # two numbers of a column are exchanged alone
+                asked.append((problem.reprinted(prints), None))
+                changes.append(Change("label", "", one, source, "", "", other=other))
+    for place, now in search.likeliest(asked):
+        changed = asked[place][0]
+        yield search.explained([changes[place]], changed, changed.box, now)
+
+
 def exchanged_inputs(search: Search) -> Iterator[Explained]:
     """Two numbers of a given column that stand in each other's place."""
     problem, tried = search.problem, list[tuple[int, int, Box]]()
     for members in problem.rows.values():
-        for n, m in _pairs(members):
+        for n, m in combinations(members, 2):
             one, other = problem.unknowns[n], problem.unknowns[m]
             if one.printed is None or other.printed is None or one.printed.text == other.printed.text:
                 continue
@@ -55,12 +78,6 @@ def exchanged_inputs(search: Search) -> Iterator[Explained]:
             texts = one.printed.text, other.printed.text
             change = Change("label", one.column, one.index, INPUT, *texts, other=other.index)
             yield search.explained([change], problem, box, now)
-
-
-def _pairs(members: Sequence[int]) -> Iterable[tuple[int, int]]:
-    for place, n in enumerate(members):
-        for m in members[place + 1 :]:
-            yield n, m
 
 
 def columns(search: Search) -> Iterator[Explained]:

@@ -16,7 +16,7 @@ from ..result.verdict import INPUT, Change, Tried
 from ..result.verdict_words import mismatch as in_words
 from .comparison import prints_same
 from .digits import is_slip
-from .exchanges import columns, exchanged_in_tables, exchanged_inputs, orders
+from .exchanges import columns, exchanged_in_tables, exchanged_inputs, exchanged_rows, orders
 from .habits import (
     computed_from_printed,
     every_row,
@@ -27,7 +27,13 @@ from .habits import (
 )
 from .misprints import misprint, misprints, two_misprints
 from .problem import Problem
-from .scales import misplaced_inputs, misplaced_tables, truncated_inputs, truncated_tables
+from .scales import (
+    misplaced_inputs,
+    misplaced_tables,
+    misplaced_together,
+    truncated_inputs,
+    truncated_tables,
+)
 from .search import Explained, Search
 
 __all__ = ["Doubts", "Explained", "explanations"]
@@ -37,10 +43,10 @@ Kind = Callable[[Search], Iterator[Explained]]
 KINDS: tuple[tuple[Kind, ...], ...] = (
     (computed_from_printed, every_row, other_conventions, rounded_constants),
     (
-        truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, columns, without_a_test,
-        other_rows, misplaced_inputs, misplaced_tables, misprints,
+        truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, exchanged_rows, columns,
+        without_a_test, other_rows, misplaced_inputs, misplaced_tables, misprints,
     ),
-    (orders, two_misprints),
+    (orders, misplaced_together, two_misprints),
 )  # fmt: skip
 """What is tried, in the order of how much it changes: later ones only where the earlier explain nothing."""
 

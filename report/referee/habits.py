@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..cells.address import index_text
 from ..engines.numpy import Program, evaluate
 from ..result.verdict import INPUT, Change
-from ..sheet import Column, Formula, Given, Sheet
+from ..sheet import Axis, Column, Formula, Given, Sheet
 from .campaign import Array, Campaign
 from .minimax import best
 from .misprints import freed
@@ -219,7 +219,7 @@ def other_rows(search: Search) -> Iterator[Explained]:
             continue
         if not isinstance(column.rule, Formula) or not search.worth({n}):
             continue
-        rows = dict(_rows(problem.campaign.values.layouts[axes[0].name].labels))
+        rows = dict(_rows(problem.campaign, axes[0]))
         ways = over_rows(column, axes[0], list(rows.values()), sheet)
         yield from _over_rows(search, [n], ways, list(rows))
 
@@ -241,11 +241,15 @@ def _over_rows(
         yield search.explained(changes, changed, changed.box, found[0][1])
 
 
-def _rows(labels: NDArray[np.int64]) -> Iterator[tuple[str, NDArray[np.intp]]]:
+def _rows(campaign: Campaign, axis: Axis) -> Iterator[tuple[str, NDArray[np.intp]]]:
     """Rows of an axis, and what is said of them: the likelier mistakes first."""
+    labels = campaign.values.layouts[axis.name].labels
     number = len(labels)
     every = np.arange(number)
     names = [index_text(label) for label in labels.tolist()]
+    if axis.is_given:
+        table = campaign.inputs.on(axis.name)
+        names = [f"{table.row} {table.called(test)}" for (test,) in labels.tolist()]
     for row, name in enumerate(names):
         yield f"without {name}", np.delete(every, row)
     for row, name in enumerate(names):

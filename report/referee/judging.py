@@ -33,6 +33,7 @@ from ..sheet import Given, Sheet
 from .campaign import Campaign
 from .certificate import Certificate
 from .comparison import missing_as_expected, prints_same
+from .exchanges import exchanged_in_tables, exchanged_rows
 from .explain import Explained, explanations
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
@@ -111,7 +112,8 @@ def referee(
     slips: tuple[Explained, ...] = ()
     if found.mismatch > 1 and joint.verdict == WITHIN:
         step("refereeing what one slip would explain")
-        slips = tuple(slipped(Search(whole)))
+        search = Search(whole)
+        slips = (*slipped(search), *exchanged_in_tables(search), *exchanged_rows(search))
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()

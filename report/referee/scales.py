@@ -8,16 +8,30 @@ from fractions import Fraction
 
 import numpy as np
 
+from ...derivations.unit_text import parse_open
 from ..quantity import Printed
 from ..result.verdict import INPUT, Change
-from .campaign import Unknown
+from .campaign import Array
 from .problem import Box, Problem
 from .search import Explained, Search
 
-__all__ = ["misplaced_inputs", "misplaced_tables", "truncated_inputs", "truncated_tables"]
+__all__ = [
+    "misplaced_inputs",
+    "misplaced_tables",
+    "misplaced_together",
+    "truncated_inputs",
+    "truncated_tables",
+]
 
 POWERS = (-1, 1, -2, 2, -3, 3, -6, 6)
 """By which powers of ten a unit or a decimal point may be wrong, the likelier first."""
+FACTORS = {"2": Fraction(2), "1/2": Fraction(1, 2)}
+"""A radius for a diameter, an amplitude for what is between the peaks, and the reverse."""
+UNITS = (
+    ("rad", "deg"), ("s", "min", "h"), ("mm", "in"), ("m/s", "km/h"), ("Pa", "atm", "mmHg"),
+    ("J", "cal", "eV"), ("N", "kgf"),
+)  # fmt: skip
+"""Units of a kind that are no powers of ten of one another: one may be taken for the other."""
 
 
 def truncated_inputs(search: Search) -> Iterator[Explained]:
@@ -63,20 +77,55 @@ def _other(mode: str) -> str:
 
 @dataclass(frozen=True)
 class _Misplaced:
-    """Given cells whose decimal points may stand elsewhere."""
+    """Given cells that may stand in another unit."""
 
     members: Sequence[int]
-    power: int
     box: Box
+    change: Change
+    """What that says."""
 
-    def change(self, unknowns: Sequence[Unknown]) -> Change:
-        """What that says."""
-        first = unknowns[self.members[0]]
-        assert first.printed is not None
-        if len(self.members) > 1:
-            return Change("unit", first.column, (), INPUT, "", "", power=self.power)
-        would = shifted(first.printed, self.power).text
-        return Change("unit", first.column, first.index, INPUT, first.printed.text, would, power=self.power)
+
+@dataclass(frozen=True)
+class _Scale:
+    """By what numbers may have to be multiplied."""
+
+    factor: Fraction
+    says: Change
+    """That, of a column that it does not name."""
+
+    def column(self, cell: str, source: str) -> Change:
+        """That of a column."""
+        return replace(self.says, cell=cell, source=source)
+
+    def cell(self, cell: str, source: str, index: tuple[int, ...], of: Printed) -> Change:
+        """That of a cell alone, as it would be printed."""
+        would = shifted(of, self.says.power).text
+        return replace(self.column(cell, source), index=index, printed=of.text, would_print=would)
+
+
+_POINTS = tuple(_Scale(Fraction(10) ** n, Change("unit", "", (), "", "", "", power=n)) for n in POWERS)
+_SAME = _Scale(Fraction(1), Change("unit", "", (), "", "", ""))
+_TWICE = tuple(_Scale(factor, Change("factor", "", (), "", "", text)) for text, factor in FACTORS.items())
+
+
+def _scales(of: Printed) -> Iterator[_Scale]:
+    """What may be wrong with a whole column that is printed like this."""
+    yield from _POINTS
+    yield from _TWICE
+    yield from _other_units(of)
+
+
+def _other_units(of: Printed) -> Iterator[_Scale]:
+    """Those of the units that its own may have been taken for."""
+    own = parse_open(of.unit)
+    for units in UNITS:
+        others = [parse_open(unit) for unit in units]
+        # An angle is a pure number as any other is: it is known by the name of its unit.
+        if own.text in units or own.dimension == others[0].dimension != ():
+            for other in others:
+                factor = other.scale / own.scale
+                if str(factor.numerator * factor.denominator).strip("0") != "1":  # no power of ten
+                    yield _Scale(factor, Change("unit", "", (), "", own.text, other.text))
 
 
 def shifted(of: Printed, power: int) -> Printed:
@@ -94,32 +143,43 @@ def shifted(of: Printed, power: int) -> Printed:
 
 
 def misplaced_inputs(search: Search) -> Iterator[Explained]:
-    """A given column, or a cell of it, in another unit than is said: off by a power of ten."""
-    problem, tried = search.problem, list[_Misplaced]()
+    """A given column in another unit than is said, doubled or halved; a cell of it off by a power of ten."""
+    problem, tried, alike = search.problem, list[_Misplaced](), dict[_Scale, list[list[int]]]()
     for name, members in problem.rows.items():
-        if problem.unknowns[members[0]].printed is None or problem.sheet[name].exact:
+        printed = problem.unknowns[members[0]].printed
+        if printed is None or problem.sheet[name].exact or not problem.campaign.suspects(name):
             continue
-        if not problem.campaign.suspects(name):
-            continue
-        every = [members] if len(members) == 1 else [members, *([n] for n in members)]
-        for some in every:
-            # In another unit of a column a fit to it is far from where it is by this one.
-            moved = [*some, *problem.fitted_to(name)] if some is members else some
-            if search.worth(search.resting_on(moved)):
-                boxes = ((power, _scaled(problem, some, power)) for power in POWERS)
-                tried += [_Misplaced(some, power, box) for power, box in boxes if box is not None]
+        for scale in _other_units(printed):
+            alike.setdefault(scale, []).append(members)
+        # In another unit of a column a fit to it is far from where it is by this one.
+        if search.worth(search.resting_on([*members, *problem.fitted_to(name)])):
+            for scale in _scales(printed):
+                if (box := _scaled(problem, members, scale.factor)) is not None:
+                    tried.append(_Misplaced(members, box, scale.column(name, INPUT)))
+        for n in members if len(members) > 1 else ():
+            if search.worth(search.resting_on([n])):
+                unknown = problem.unknowns[n]
+                for scale in _POINTS:
+                    if (box := _scaled(problem, [n], scale.factor)) is not None:
+                        change = scale.cell(name, INPUT, unknown.index, unknown.printed or printed)
+                        tried.append(_Misplaced([n], box, change))
+    for scale, columns in alike.items():  # a calculator that was left in radians spares no angle
+        members = [n for column in columns for n in column]
+        box = _scaled(problem, members, scale.factor) if len(columns) > 1 else None
+        if box is not None and search.worth(search.resting_on(members)):
+            tried.append(_Misplaced(members, box, scale.column("", INPUT)))
     alive = [tried[place] for place in search.screened([one.box for one in tried])]
     if not alive:
         return
     starts = problem.restarted(np.stack([one.box.start for one in alive]))
     asked = [(problem, replace(one.box, start=start)) for one, start in zip(alive, starts, strict=True)]
     for place, now in search.likeliest(asked):
-        yield search.explained([alive[place].change(problem.unknowns)], *asked[place], now)
+        yield search.explained([alive[place].change], *asked[place], now)
 
 
-def _scaled(problem: Problem, members: Sequence[int], power: int) -> Box | None:
-    """The box with some cells a power of ten larger; None where that is not allowed."""
-    factor, allowed = 10.0**power, [problem.unknowns[n].allowed for n in members]
+def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | None:
+    """The box with some cells so many times as large; None where that is not allowed."""
+    factor, allowed = float(times), [problem.unknowns[n].allowed for n in members]
     starts = [problem.box.start[n] * factor for n in members]
     ends = [
         bounds.clip(problem.box.low[n] * factor, problem.box.high[n] * factor)
@@ -134,23 +194,46 @@ def misplaced_tables(search: Search) -> Iterator[Explained]:
     """A published column, or a cell of it, in another unit than is said."""
     problem, asked, changes = search.problem, list[tuple[Problem, Box]](), list[Change]()
     for (source, cell), members in search.groups.items():
-        every = [members] if len(members) == 1 else [members, *([n] for n in members)]
-        for some in every:
-            if not search.worth(some):
-                continue
-            first = problem.published[some[0]]
-            for power in POWERS:
-                prints = {n: _other_unit(problem.published[n].printed, power) for n in some}
-                asked.append((problem.reprinted(prints), problem.box))
-                change = Change("unit", cell, (), source, "", "", power=power)
-                if len(some) == 1:
-                    texts = first.printed.text, shifted(first.printed, power).text
-                    change = Change("unit", cell, first.index, source, *texts, power=power)
-                changes.append(change)
+        if search.worth(members):
+            for scale in _scales(problem.published[members[0]].printed):
+                asked.append((_multiplied(problem, members, scale.factor), problem.box))
+                changes.append(scale.column(cell, source))
+        for n in members if len(members) > 1 else ():
+            if search.worth([n]):
+                value = problem.published[n]
+                for scale in _POINTS:
+                    asked.append((_multiplied(problem, [n], scale.factor), problem.box))
+                    changes.append(scale.cell(cell, source, value.index, value.printed))
     for place, now in search.likeliest(asked):
         yield search.explained([changes[place]], *asked[place], now)
 
 
-def _other_unit(of: Printed, power: int) -> Printed:
-    factor = Fraction(10) ** power
-    return replace(of, value=(of.value - of.zero) * factor + of.zero, scale=of.scale * factor)
+def misplaced_together(search: Search) -> Iterator[Explained]:
+    """Several published columns, each in another unit than is said: each as it is nearest to its cells."""
+    problem, changes = search.problem, list[Change]()
+    changed, cells = problem, problem.guessing.at(problem.box.start).cells
+    for (source, cell), members in search.groups.items():
+        with np.errstate(all="ignore"):
+            times = cells[members] / problem.centre[members]
+        scales = _SAME, *_scales(problem.published[members[0]].printed)
+        scale = min(scales, key=lambda each: _off(times, each))
+        if scale is not _SAME:
+            changed = _multiplied(changed, members, scale.factor)
+            changes.append(scale.column(cell, source))
+    if len(changes) > 1 and (now := search.met(changed)) is not None:
+        yield search.explained(changes, changed, changed.box, now)
+
+
+def _off(times: Array, scale: _Scale) -> float:
+    """How far numbers are from being multiplied so."""
+    found = float(np.abs(times / float(scale.factor) - 1).max())
+    return found if np.isfinite(found) else np.inf
+
+
+def _multiplied(problem: Problem, members: Sequence[int], times: Fraction) -> Problem:
+    """The same with some published values so many times as large."""
+    return problem.reprinted({n: _other_unit(problem.published[n].printed, times) for n in members})
+
+
+def _other_unit(of: Printed, times: Fraction) -> Printed:
+    return replace(of, value=(of.value - of.zero) * times + of.zero, scale=of.scale * times)

@@ -11,7 +11,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, localc
 from fractions import Fraction
 
 from ...derivations.proved import enumerated
-from ..cells.address import address
+from ..cells.address import address, index_text
 from ..inputs.published import PublishedValue
 from ..quantity import Printed, behind
 from .verdict import (
@@ -82,6 +82,7 @@ POSSIBLE = {
     "label": "possible confusion",
     "order": "possible disorder",
     "unit": "possible unit",
+    "factor": "possible factor",
     "rows": "possible rows",
     "parameter": "possible convention",
     "printed": "possible rounding",
@@ -94,8 +95,9 @@ MOST_TOLD = 5
 """So many explanations are told in sentences."""
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
-    "number or two, no truncated column, no unit off by a power of ten, no mean over other rows, nothing "
-    "exchanged or in another order, nothing computed from rounded numbers or constants, no other convention"
+    "number or two, no truncated column, no other unit, nothing doubled or halved, no mean over other rows, "
+    "nothing exchanged or in another order, nothing computed from rounded numbers or constants, no other "
+    "convention"
 )
 
 _MOST_PLACES = 16
@@ -285,7 +287,8 @@ def holds(said: str, explanations: Sequence[Explanation]) -> bool:
 
 def names(explanations: Sequence[Explanation]) -> str:
     """What the column ``explained`` calls each of some explanations."""
-    return f"in the column 'explained' of a known difference: {'; '.join(map(name, explanations))}"
+    called = dict.fromkeys(map(name, explanations))
+    return f"in the column 'explained' of a known difference: {'; '.join(called)}"
 
 
 def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
@@ -354,12 +357,20 @@ def claimed(change: Change) -> str:
             return f"{cell} was {would}{_or(change)}, not {printed}"
         case "truncated":
             return f"{cell}{of} was {would}, not {printed}"
-        case "unit" if not change.index:
-            return f"the numbers of {cell}{of} are to be multiplied by 1e{change.power}"
+        case "unit" | "factor" if not change.index:
+            if not cell:
+                return f"all that is given in {printed} was taken in {would}"
+            if printed:
+                how = "are in" if of else "were taken in"
+                return f"the numbers of {cell}{of} {how} {would}, not in {printed}"
+            return f"the numbers of {cell}{of} are to be multiplied by {would or f'1e{change.power}'}"
         case "rows":
             return f"{cell}{of} was taken {would}{_or(change)}"
         case "order":
             return f"{cell}{of} stands in another order, {would}"
+        case "label" if not change.cell:
+            both = f"rows {index_text(change.index)} and {index_text(change.other)}"
+            return f"{both}{of} stand in each other's place"
         case "label" if change.index:
             other = address(change.cell, change.other)
             return f"{cell} and {other}{of} stand in each other's place ({printed} and {would})"
@@ -386,12 +397,16 @@ def _suggested(change: Change) -> str:
     match change.kind:
         case "truncated" | "parameter":
             return f"may have been {would}, not {printed}"
-        case "unit" if not change.index:
-            return f"may have to be multiplied by 1e{change.power}"
+        case "unit" | "factor" if not change.index:
+            if printed:
+                return f"may be in {would}, not in {printed}"
+            return f"may have to be multiplied by {would or f'1e{change.power}'}"
         case "rows":
             return f"may have been taken {would}"
         case "order":
             return f"may belong in the order {would}"
+        case "label" if not change.cell:
+            return f"rows {index_text(change.index)} and {index_text(change.other)} may have changed places"
         case "label" if change.index:
             return f"{printed} and {would} may have changed places"
         case "label":
