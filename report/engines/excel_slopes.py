@@ -14,6 +14,7 @@ from itertools import count
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, eye
 
 from ..cells.grid import LONGEST, SLOPES, CellBlock, FilledDown, Place
@@ -324,8 +325,10 @@ class _Printing(Writing):
         return place, f"INDEX({place.range(here)},{row}-{size - 1}):INDEX({place.range(here)},{row})"
 
     def stretch(self, place: Place, axis: str) -> str:
-        """All rows of an axis; of a sum in groups, those of the group."""
-        return super().stretch(place, axis) if self.name in self.slopes.held else place.range(self.here)
+        """All rows of an axis; of a sum in groups, and of what has a place there, those of the group."""
+        quantity = self.slopes.quantities.get(self.name)
+        grouped = self.name in self.slopes.held or (quantity and quantity.share and quantity.axis)
+        return super().stretch(place, axis) if grouped else place.range(self.here)
 
     def product(self, term: Term, spread: bool = False) -> Expr:
         """A term, for a row or for rows."""
@@ -335,8 +338,7 @@ class _Printing(Writing):
             factors.append(Symbol(name) if part is None or (spread and name in slopes.spread) else part.value)
         if term.by and term.group is not None and term.rows is not None:
             symbol = f"{term.by} in {term.rows}"
-            sizes = [rows.stop - rows.start for rows in self.layouts[term.rows].groups]
-            self.of_group[symbol] = self.places.columns[term.by], np.repeat(np.arange(len(sizes)), sizes)
+            self.of_group[symbol] = self.places.columns[term.by], self.group_of(term.rows)
             factors.append(Symbol(symbol))
         elif term.by:
             factors.append(Symbol(term.by))
@@ -451,11 +453,9 @@ class _Printing(Writing):
     def share(self, share: Share) -> str:
         """What a row counts by its place: rows with one value share it."""
         total = self.plan.totals[share.total]
-        if self.layouts[total.over.name].starts is not None:
-            raise NotPrintable(f"{share.total} is taken of each group")
         (symbol,) = total.terms.free_symbols
         term = Term((), rows=total.over.name, of=total.column.name, over=True)
-        taken = [self.places.columns[name].cell(0, self.here) for name in share.taken]
+        taken = [self.taken(name, total.over.name) for name in share.taken]
         if share.word == "rows":
             own, pairs = self.symbol(symbol), zip(taken[::2], taken[1::2], strict=True)
             counted = "+".join(f"IF({own}={value},1/{number},0)" for value, number in pairs)
@@ -467,6 +467,18 @@ class _Printing(Writing):
         count = f"COUNT({every})"
         least = {"median": (f"INT(({count}+1)/2)", f"INT({count}/2)+1"), "min": ("1",), "max": (count,)}
         return f"SMALL({every},{least[total.word][share.place]})"
+
+    def taken(self, name: str, rows: str) -> str:
+        """What stands in a place of a total by order, or how many rows have it: of groups, the own one's."""
+        place, axis = self.places.columns[name], self.slopes.quantities[name].axis
+        if axis is None:
+            return place.cell(0, self.here)
+        return self.fill(place, None if _name(self.axis) == axis else self.group_of(rows))
+
+    def group_of(self, members: str) -> NDArray[np.intp]:
+        """The group of each row."""
+        sizes = [rows.stop - rows.start for rows in self.layouts[members].groups]
+        return np.repeat(np.arange(len(sizes)), sizes)
 
     def solved(self, solved: Any, axis: str | None) -> str:
         """A place in the solution of the equations of a loop."""

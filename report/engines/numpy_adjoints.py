@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..cells.layout import precedents
 from ..cells.values import Status, Values, rows_kept
 from ..plan.adjoints import Adjoint, Share, Solution, Term
-from ..plan.order import places
+from ..plan.order import Word, places
 from ..plan.slopes import NodeDerivatives
 from .kernels import Array
 
@@ -114,19 +114,20 @@ class _Adding:
         value = self.values.value[slope.by]
         if slope.index is not None:
             value = value[self.layouts[node.over].rows[slope.index]]
-        kept = self.kept(node.of, node.over)
+        word, kept = node.word or "sum", self.kept(node.of, node.over)
+        groups = self.layouts[node.over].groups
         if share.word == "value":
-            ordered = np.sort(value[kept])
-            return (
-                ordered[[places(node.word, ordered.size)[share.place]]]
-                if ordered.size
-                else np.full(1, np.nan)
-            )
+            return np.array([_place(value[rows][kept[rows]], word, share.place) for rows in groups])
+        one, *_ = taken = [self.found[name] for name in share.taken]
         if share.word == "number":
-            return np.array([np.sum(kept & (value == self.found[share.taken[0]]))], dtype=np.float64)
+            return np.array([
+                np.sum(kept[rows] & (value[rows] == own))
+                for rows, own in zip(groups, one, strict=True)
+            ], dtype=np.float64)  # fmt: skip
+        taken = [np.repeat(own, [rows.stop - rows.start for rows in groups]) for own in taken]
         found: Array = np.zeros(value.shape)
-        for one, number in zip(share.taken[::2], share.taken[1::2], strict=True):
-            found += np.where(kept & (value == self.found[one]), 1 / self.found[number], 0.0)
+        for one, number in zip(taken[::2], taken[1::2], strict=True):
+            found += np.where(kept & (value == one), 1 / number, 0.0)
         return found / (len(share.taken) / 2)
 
     def solved(self, solved: Solution, size: int) -> Array:
@@ -142,3 +143,9 @@ class _Adding:
         with suppress(np.linalg.LinAlgError):
             found[good] = np.linalg.solve(left[good], right[good])[:, solved.place, 0]
         return found
+
+
+def _place(values: Array, word: Word, place: int) -> float:
+    """What stands in a place that a total by order takes; NaN if there is none."""
+    ordered = np.sort(values)
+    return float(ordered[places(word, ordered.size)[place]]) if ordered.size else np.nan

@@ -410,7 +410,7 @@ class _ReversePass:
                 for word in ("value", "number"):
                     own = f"{word} {place + 1} of {node.name}"
                     share = Share(node.name, place, word, tuple(taken[-1:]) if word == "number" else ())
-                    taken.append(self.add(Adjoint(own, node.of, node.name, None, share=share)))
+                    taken.append(self.add(Adjoint(own, node.of, node.name, node.axis, share=share)))
             self.add(Adjoint(name, node.of, node.name, node.over, share=Share(node.name, taken=tuple(taken))))
         return name
 
@@ -538,6 +538,8 @@ class _ReversePass:
 
     def close(self, own: _PendingTerms, loop: int) -> None:
         """Lead the adjoints of what a loop ends with to what is before it."""
+        if own.groups:  # the rows of a loop name one another by way of numbers, whatever their group
+            raise Unfollowed(own.result)
         fold = self.fold(loop)
         self.by_rows(own, fold, loop)
         if not fold.numbers or not any(

@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import grouped
 import pytest
 import spreadsheets
 
@@ -187,6 +186,36 @@ class Each(Method, headline="level ratio b apart swing wide"):
     swing = let(total(c * line.residual**2 * (y - level), of=instrument) / level**2, "of readings", "mm")
     wide = let(max(a) - min(a), "of all", like=a)
 """
+ADJUSTED = """from loopsheet import Method, fit, groups, let, mean, measured, unknown
+
+
+class Adjusted(Method, headline="level typical"):
+    x = measured("1", "abscissa")
+    y = measured("mm", "reading")
+    instrument = groups("instrument")
+    a = unknown("offset", "mm")
+    b = unknown("slope", "mm")
+    line = fit(y, a + b * x, u={x: "stated", y: "stated"})
+    level = let(mean(y, of=instrument), "mean of an instrument")
+    typical = let(mean(line.at_x, of=instrument), "of what is adjusted")
+"""
+ORDER = """from loopsheet import Method, count, given, groups, let, mean, measured, median, total
+
+
+class Order(Method, headline="typical low swing wide skew"):
+    x = measured("1", "abscissa")
+    y = measured("mm", "reading")
+    zero = given("mm", "where they begin")
+    instrument = groups("instrument")
+    square = let((y - zero) ** 2, "of each row")
+    typical = let(median(square, of=instrument), "that in the middle", "mm^2")
+    low = let(min(y, of=instrument) * max(y, of=instrument), "of both ends", "mm^2")
+    level = let(mean(y, of=instrument), "mean of an instrument", "mm")
+    swing = let(level * max(y, of=instrument) - typical, "of an instrument", "mm^2")
+    wide = let(max(typical) - min(low), "of all", "mm^2")
+    middle = let(median(y, of=instrument), "in the middle", "mm")
+    skew = let(mean(x * y * middle), "of both", "mm^2")
+"""
 PAIRS = "reading,instrument,x [1],y [mm]\n1,A,1.0,{}\n2,B,1.5,2.25\n3,A,2.2,1.75\n4,B,1.1,2.20\n"
 PAIRS += "5,A,1.6,1.62\n6,B,2,3.1\n"
 READINGS = "reading,instrument,y [mm]\n1,A,{}\n2,B,2.25\n3,A,1.75\n4,B,2.20\n5,A,1.62\n"
@@ -198,6 +227,7 @@ SURE = {name: f'[uncertainty]\n{each}' for name, each in {
 VOLTS, SHARE = method(SUMS, VOLTAGES.format("48.0"), STATED, BATH), 'c = "1.20, u = 0.01"\n'
 ZERO = 'zero = "0.10 mm, u = 0.01"\n'
 INSTRUMENTS = method(EACH, PAIRS.format("1.50"), ZERO + 'c = "1.20, u = 0.01"\n', SURE["xy"])
+RANKED = method(ORDER, PAIRS.format("1.50") + "7,A,1.2,1.60\n8,B,1.3,2.31\n", ZERO, SURE["xy"])
 CASES = {
     "sums": Case(VOLTS, "1,48.0", "1,48.9", {("V", 0): 48.9}),
     "sums of fewer": Case(VOLTS, "1,48.0", "1,", {("V", 0): None}),
@@ -218,6 +248,8 @@ CASES = {
     ),
     "results of groups": Case(INSTRUMENTS, "1.0,1.50", "1.0,1.53", {("y", 0): 1.53}, moves=20),
     "results of groups of fewer": Case(INSTRUMENTS, "B,1.5,2.25", "B,1.5,", {("y", 1): None}, moves=20),
+    "orders of groups": Case(RANKED, "2,1.60", "2,1.70", {("y", 6): 1.70}, moves=10),
+    "orders of groups of fewer": Case(RANKED, "1.6,1.62", "1.6,", {("y", 4): None}, moves=10),
     "digits of other sizes": Case(
         method(SIZES, "reading,V [mV]\n1,1.00\n", 'h = "4.17 mm, u = 7 % of reading"\n', CERTAIN),
         '"4.17', '"0.0128', {("h", 0): 0.0128}, moves=0,
@@ -342,11 +374,8 @@ def test_no_sensitivity_is_a_number_as_issued(folder: str) -> None:
 def test_a_sensitivity_without_formula_is_told_of_the_inputs_as_issued(
     require: Callable[..., str], tmp_path: Path
 ) -> None:
-    """That of a median of each group: neither u nor U nor what is decided with it outlives an edit."""
-    rows = (("A", "1.50"), ("B", "2.20"), ("A", "1.75"), ("A", "1.61"), ("B", "2.28"))
-    code = grouped.METHOD.replace("between within F R2 s apart", "level typical")
-    sure = '[uncertainty]\ny = "u = 0.1"\n'
-    delivered = spreadsheets.deliver(grouped.write(tmp_path / "few", rows, code=code, more=sure))
+    """What a fit adjusts in each group: neither u nor U nor what is decided with it outlives an edit."""
+    delivered = Office.made(tmp_path / "few", method(ADJUSTED, PAIRS.format("1.50"), "", SURE["xy"]))
     books = {
         "as issued": delivered.content,
         "edited": delivered.edited({("y", 0): 1.54}),
