@@ -2,7 +2,7 @@
 // asked for its slope by each cell that it names, and the chain rule does the rest. Nothing in this file knows the page.
 
 const MOVE = 2 ** -10; // in standard uncertainties, to both sides: far enough for doubles
-const BENT = 2 ** -20; // of the change to both sides together: what those to either side may differ by where it is straight
+const BENT = 2 ** -16; // of the change to both sides together: what those to either side may differ by; a middle is wrong by the square of it, less than LEFT
 const LEAST = 2 ** -32; // of a cell: no step is shorter
 const NEAR = 2 ** -17; // of a root: so far from it its form is asked for its slope
 const LEFT = 2 ** -30; // of the steps of all ways to a cell: what is left of an effect where they cancel is rounding
@@ -20,7 +20,10 @@ function sensitivities(columns, sheet, errors) {
     const out = blank(name), sizes = new Float64Array(out.length / count), many = refs.filter(([other, , over]) => over !== null && found[other]?.length > count ** 2).map(([other]) => other);
     if (many.length) along(out, column, [...new Set(many)], found, sheet, count);
     for (const other of others) if (!many.includes(other)) chain(out, sizes, found[other], (known[`${name} ${other}`] ??= []), column, other, sheet, count);
-    return out.map((effect, n) => (Math.abs(effect) <= LEFT * sizes[Math.floor(n / count)] ? 0 : effect));
+    sizes.forEach((size, row) => {
+      for (let n = row * count; n < (row + 1) * count; n++) if (Math.abs(out[n]) <= LEFT * size) out[n] = 0;
+    });
+    return out;
   };
   const put = ({ name }, effects) => {
     if (effects) found[name] = effects;

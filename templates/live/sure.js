@@ -47,10 +47,17 @@ class Sure {
     delete this.told[name];
   }
 
+  // The columns whose uncertainty is told, and those that they rest on: not the points of a curve that is only drawn.
+  asked() {
+    const own = CELLS.filter(({ axis }) => axisNamed(axis)?.kind !== "repeat"), found = new Set(own.map(({ name }) => name));
+    for (const { name } of own) this.trace.ancestors(name, found);
+    return CELLS.filter(({ name }) => found.has(name));
+  }
+
   // What each error does to a cell, in SI, with its sign.
   parts(name, row) {
     const { length } = this.errors;
-    this.effects ??= sensitivities(CELLS, this.trace.sheet, this.errors);
+    this.effects ??= sensitivities(this.asked(), this.trace.sheet, this.errors);
     return this.effects[name]?.subarray(row * length, (row + 1) * length) ?? new Float64Array(length);
   }
 
