@@ -422,9 +422,12 @@ def _share(new: Any, old: Any) -> Any:
 
 
 def _come_to(last: Any, before: Any) -> Any:
-    """What a cell has come to where a loop rests: zero, as steps do, if not one digit of it has stayed."""
-    moves = last is not None and before is not None and 10 * abs(last - before) > abs(last)
-    return mpmath.mpf(0) if moves else last
+    """What a cell has come to where a loop rests: zero, as steps do, if no digit of a tiny one has stayed.
+
+    What is not tiny may have moved, too: a fit may come from afar to where it rests in a single pass.
+    """
+    tiny = last is not None and before is not None and abs(last) < _TINY
+    return mpmath.mpf(0) if tiny and 10 * abs(last - before) > abs(last) else last
 
 
 class _Scope:
