@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sympy import Add, Basic, Function, Integral, Max, Min, Mul, Piecewise, Pow, Symbol
+from sympy import Abs, Add, Basic, Function, Integral, Max, Min, Mul, Piecewise, Pow, Symbol
 from sympy.core.relational import Relational
 
 from .reductions import REDUCTIONS
 
-__all__ = ["evaluated", "rebuilt", "renamed", "replaced"]
+__all__ = ["evaluated", "in_absolute_values", "rebuilt", "renamed", "replaced"]
 
 _COMPARED = (Max, Min, Relational)
 """What sympy decided by comparing its parts when it was first made."""
@@ -57,6 +57,21 @@ def rebuilt(expression: Basic, parts: Sequence[Any]) -> Any:
         isinstance(expression, _DECIDED) and all(map(_alike, parts, expression.args))
     )
     return expression.func(*parts, evaluate=False) if decided else expression.func(*parts)
+
+
+def in_absolute_values(expression: Any, by: Basic | None = None) -> Any:
+    """The same without Max and Min, whose derivatives few know: Max(a, b) is (a + b + |a - b|)/2.
+
+    `by`: what those name that are meant; all are, if left out.
+
+    >>> x, y = Symbol("x", real=True), Symbol("y", real=True)
+    >>> in_absolute_values(Max(x, y) + Max(y, 1), x)
+    x/2 + y/2 + Max(1, y) + Abs(x - y)/2
+    """
+    return expression.replace(
+        lambda part: isinstance(part, (Max, Min)) and (by is None or part.has(by)),
+        lambda part: part.rewrite(Abs),
+    )
 
 
 def _alike(new: Basic, old: Basic) -> bool:

@@ -128,7 +128,10 @@ def test_steps_that_do_not_settle_are_told_as_such(report: Report, judge: engine
     found = readers.of_values(report.values, "xlsx")
     status = {**found.status, "alpha": ["#STEPS!", *found.status["alpha"][1:]]}
     (finding,) = judge.agreement(replace(found, status=status)).findings
-    assert finding == "alpha[1-2]: the steps of xlsx to a root do not settle (#STEPS!), 50 digits say ok"
+    assert finding == (
+        "alpha[1-2]: the steps of xlsx to a root do not settle (#STEPS!), 50 digits say ok: take a start "
+        "nearer to it, or more steps, root(..., start=..., steps=60)"
+    )
 
 
 def test_many_findings_are_counted(report: Report, judge: engines.Judge) -> None:

@@ -315,6 +315,14 @@ def _sin(a: Intervals) -> Intervals:
     return _cos(_UFUNCS["subtract"](a, quarter))
 
 
+def _tan(a: Intervals) -> Intervals:
+    # Which odd multiples of pi/2 may lie inside, where it jumps: rather one too many.
+    first, last = np.ceil(a.low / np.pi - 0.5 - 1e-9), np.floor(a.high / np.pi - 0.5 + 1e-9)
+    known = (np.abs(a.low) < 1e6) & (np.abs(a.high) < 1e6) & (last < first)
+    found = _loosely(np.tan(a.low), np.tan(a.high))
+    return Intervals(np.where(known, found.low, -np.inf), np.where(known, found.high, np.inf))
+
+
 def _truth(certain: Any, possible: Any) -> Intervals:
     return Intervals(np.where(certain, 1.0, 0.0), np.where(possible, 1.0, 0.0))
 
@@ -360,10 +368,12 @@ _UFUNCS: dict[str, Callable[..., Intervals]] = {
     "log": _log,
     "cos": _cos,
     "sin": _sin,
+    "tan": _tan,
+    "arccos": lambda a: _loosely(np.arccos(a.high), np.arccos(a.low)),
     "cosh": lambda a: _loosely(np.cosh(_absolute(a).low), np.cosh(_absolute(a).high)),
     **{
         function.__name__: _rising(function)
-        for function in (np.expm1, np.log1p, np.cbrt, np.arctan, np.sinh, np.tanh, np.arcsinh)
+        for function in (np.expm1, np.log1p, np.cbrt, np.arcsin, np.arctan, np.sinh, np.tanh, np.arcsinh)
     },
     "floor": lambda a: Intervals(np.floor(a.low), np.floor(a.high)),
     "ceil": lambda a: Intervals(np.ceil(a.low), np.ceil(a.high)),

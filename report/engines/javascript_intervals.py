@@ -23,9 +23,12 @@ from sympy import (
     Pow,
     Rational,
     Symbol,
+    acos,
+    asin,
     asinh,
     atan,
     cos,
+    cosh,
     cse,
     exp,
     log,
@@ -33,6 +36,7 @@ from sympy import (
     pi,
     sin,
     sinh,
+    tan,
     tanh,
     true,
 )  # fmt: skip
@@ -45,7 +49,12 @@ __all__ = ["FUNCTIONS", "NOTHING", "enclose", "interval", "needed"]
 FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "minified" / "intervals.js"
 """The functions, a part for each."""
 
-_RISING = {exp: "exp", log: "log", atan: "atan", tanh: "tanh", sinh: "sinh", asinh: "asinh"}
+_RISING = {exp: "exp", log: "log", asin: "asin", atan: "atan", tanh: "tanh", sinh: "sinh", asinh: "asinh"}
+_BY_OTHERS = {
+    tan: lambda x: sin(x) / cos(x),
+    acos: lambda x: pi / 2 - asin(x),
+    cosh: lambda x: (exp(x) + exp(-x)) / 2,
+}
 NOTHING = Symbol("ALL")
 """What stands for that of which the intervals know nothing: anything."""
 
@@ -90,6 +99,8 @@ def interval(expression: Any, wide: Container[str]) -> Ends:
     if type(expression) in _RISING:
         inner = interval(expression.args[0], wide)
         return _call("rising", f"Math.{_RISING[type(expression)]}", *inner)
+    if type(expression) in _BY_OTHERS:
+        return interval(_BY_OTHERS[type(expression)](expression.args[0]), wide)
     if isinstance(expression, cos):
         return _call("cosine", *interval(expression.args[0], wide))
     if isinstance(expression, sin):

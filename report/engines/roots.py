@@ -6,7 +6,7 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, exp, factor_terms, log
+from sympy import Abs, Add, Basic, DiracDelta, Expr, Integer, Mul, Pow, Sum, Symbol, exp, factor_terms, log
 
 from ...derivations.differentiated import differentiated
 from ..plan.nodes import RowSum
@@ -15,10 +15,10 @@ __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
 
 
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
-    """The function and its first three derivatives."""
+    """The function and its first three derivatives; at a corner those beside it."""
     first = differentiated(function, unknown)
-    second = differentiated(first, unknown)
-    return function, first, second, differentiated(second, unknown)
+    second = differentiated(first, unknown).replace(DiracDelta, lambda *_: Integer(0))
+    return function, first, second, differentiated(second, unknown).replace(DiracDelta, lambda *_: Integer(0))
 
 
 def householder(f: Expr, f1: Expr, f2: Expr, f3: Expr) -> Expr:

@@ -144,8 +144,8 @@ class _Tally:
         """A cell with another status."""
         if theirs == UNSETTLED:
             self.findings.append(
-                f"{place}: the steps of {self.engine} to a root do not settle ({UNSETTLED}), "
-                f"50 digits say {exactly}"
+                f"{place}: the steps of {self.engine} to a root do not settle ({UNSETTLED}), 50 digits say "
+                f"{exactly}: take a start nearer to it, or more steps, root(..., start=..., steps=60)"
             )
         else:
             self.findings.append(f"{place}: {self.engine} says {theirs}, 50 digits say {exactly}")

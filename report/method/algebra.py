@@ -18,15 +18,15 @@ from ..workbook import Claimed
 if TYPE_CHECKING:
     from .body import MethodBody
 
-__all__ = ["claimed", "derivative"]
+__all__ = ["claimed", "derivative", "in_fractions"]
 
 _NO_ALGEBRA = "{what} is of rows in groups, of which no proof is known: claim it without"
 
 
-def _typed(formula: Expr) -> Expr:
+def in_fractions(formula: Expr) -> Expr:
     """A formula with its decimal fractions as fractions: a proof takes no rounded number."""
-    typed: Expr = formula.xreplace(_fractions(formula))
-    return typed
+    found: Expr = formula.xreplace(_fractions(formula))
+    return found
 
 
 def _fractions(*formulas: Expr) -> dict[Expr, Expr]:
@@ -53,7 +53,7 @@ def derivative(body: MethodBody, formula: Expr, by: Expr) -> Expr:
             if column is None or not isinstance(rule, Formula) or rule.expression.has(*REDUCTIONS):
                 raise SheetError(f"{cell} rests on {by}, and not by a formula of one row: write it out")
             place = dict(zip(column.cell.args[1:], cell.args[1:], strict=True))
-            found = found.xreplace({cell: _typed(rule.expression).xreplace(place)})
+            found = found.xreplace({cell: in_fractions(rule.expression).xreplace(place)})
     if found.has(*REDUCTIONS):
         raise SheetError(f"{formula} is taken over rows: write its derivative by {by} out")
     below = _inputs(body, name)
@@ -106,7 +106,7 @@ def claimed(
         raise SheetError(_NO_ALGEBRA.format(what=f"'{meaning}'"))
     found = _premises(body, (left, right) if from_ is None else from_, meaning, everything=from_ is None)
     row = Symbol("i", integer=True, positive=True)
-    members = tuple(_typed(side).subs(body.axis.index, row) for side in (left, right))
+    members = tuple(in_fractions(side).subs(body.axis.index, row) for side in (left, right))
     conditions = tuple(dict.fromkeys(each for premise, _ in found for each in premise.conditions))
     equation = Equation(
         body.free_number(f"'{meaning}'", label),

@@ -19,6 +19,7 @@ from typing import Any, cast
 from sympy import Expr, false, sympify, true
 from sympy.core.relational import GreaterThan, LessThan, StrictGreaterThan, StrictLessThan
 
+from ...derivations.rebuilt import in_absolute_values
 from ...derivations.reductions import Median
 from ...derivations.vocabulary import Quantity
 from ..axis import plural
@@ -356,8 +357,12 @@ def fit(
         its standard uncertainty, ``line.S`` and ``line.s`` have a value for each group. The model is linear.
     """
     sizes = (u if isinstance(u, Mapping) else {observed: u}).items()
-    weights = {each: size if size is None or isinstance(size, str) else exact(size) for each, size in sizes}
-    return named_next(FitLine(observed, exact(model), weights, label, figures, of))
+
+    def typed(formula: Any) -> Any:
+        return in_absolute_values(algebra.in_fractions(exact(formula)))
+
+    weights = {each: size if size is None or isinstance(size, str) else typed(size) for each, size in sizes}
+    return named_next(FitLine(observed, typed(model), weights, label, figures, of))
 
 
 @told_together

@@ -62,7 +62,7 @@ __all__ = ["Derivatives", "derivatives", "rounding"]
 
 PASSES = 20
 """How many passes of a loop are followed: each leaves a small share of what the last one did."""
-_NO_FUNCTIONS = (Derivative, Subs, DiracDelta, Heaviside)
+_NO_FUNCTIONS = (Derivative, Subs, Heaviside)
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,8 @@ class _Making:
 
     def part(self, wanted: str, column: Column, axis: Axis | None, expression: Expr) -> str:
         """A new part; its name."""
-        # What jumps has no derivative that could be printed.
+        # What jumps has no derivative that could be printed; the slope of a corner has one beside it.
+        expression = expression.replace(DiracDelta, lambda *_: S.Zero)
         value = S.NaN if expression.has(*_NO_FUNCTIONS) else expression
         symbol = self.symbol(wanted, Leaf("part", wanted, axis))
         self.nodes.append(Part(column, symbol, axis, value))

@@ -30,6 +30,8 @@ from sympy import (
     S,
     Sum,
     Symbol,
+    acos,
+    asin,
     atan,
     ceiling,
     cos,
@@ -40,6 +42,7 @@ from sympy import (
     sign,
     sin,
     sinh,
+    tan,
     tanh,
 )
 from sympy.core.relational import Relational
@@ -146,6 +149,10 @@ def _itself(expression: Any) -> Boolean:
         return And(whole, some if exponent.is_negative else Or(some, exponent > 0))
     if isinstance(expression, log):
         return expression.args[0] > 0
+    if isinstance(expression, tan):
+        return Ne(cos(expression.args[0]), 0)
+    if isinstance(expression, (acos, asin)):
+        return And(expression.args[0] >= -1, expression.args[0] <= 1)
     return S.true if isinstance(expression, _EVERYWHERE) else S.false
 
 

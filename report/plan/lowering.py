@@ -9,7 +9,7 @@ from typing import Any
 from sympy import Expr, Indexed, Symbol, false
 from sympy.core.symbol import Str
 
-from ...derivations.rebuilt import rebuilt
+from ...derivations.rebuilt import in_absolute_values, rebuilt
 from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
@@ -192,7 +192,7 @@ class Lowering:
             None if rule.sign_low is None else lower(rule.sign_low),
             None if rule.sign_high is None else lower(rule.sign_high),
             tuple(map(lower, rule.turning)),
-            lower(rule.expression),
+            in_absolute_values(lower(rule.expression), rule.unknown),
             lower(rule.value),
             requires,
             is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))),
