@@ -66,7 +66,7 @@ def in_absolute_values(expression: Any, by: Basic | None = None) -> Any:
 
     >>> x, y = Symbol("x", real=True), Symbol("y", real=True)
     >>> in_absolute_values(Max(x, y) + Max(y, 1), x)
-    x/2 + y/2 + Max(1, y) + Abs(x - y)/2
+    x/2 + y/2 + Abs(x - y)/2 + Max(1, y)
     """
     return expression.replace(
         lambda part: isinstance(part, (Max, Min)) and (by is None or part.has(by)),

@@ -99,8 +99,8 @@ class Bounds:
 
     def said(self, unit: str) -> str:
         """What is allowed, in a unit."""
-        size = parse_open(unit)
-        return f"{self.over(size.scale, size.zero)}{behind(unit)}"
+        size, open_ends = parse_open(unit), self.low is None and self.high is None
+        return f"{self.over(size.scale, size.zero)}{' in' * (open_ends and unit != '1')}{behind(unit)}"
 
     def __str__(self) -> str:
         """Say what is allowed, as the end of the sentence "it must be ..."."""

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import grouped
 import numpy as np
 import pytest
 from matplotlib.axis import Axis
@@ -348,3 +349,15 @@ def test_lines_of_tests_at_one_speed_are_seen(tmp_path: Path) -> None:
     assert [line.get_marker() for line in of_all.lines] == ["None"] * 4
     (legend,) = figures.draw(report, "loops").legends
     assert "law (3) of the paper" not in {text.get_text() for text in legend.get_texts()}
+
+
+def test_words_of_the_data_are_no_formulas(tmp_path: Path) -> None:
+    words = ("fund $5 \\xyz{ 10$", "b_$x^2$")
+    rows = tuple((word, str(x), str(y)) for word in words for x, y in ((1, 2.0), (2, 3.1), (3, 3.9)))
+    folder = grouped.write(tmp_path, rows, "catalyst,x [1],y [1]", grouped.RATES)
+    report = Study(folder).computed
+    drawn = [figures.draw(report, each.drawing) for each in figures.of(report) if not each.fixed]
+    assert drawn
+    texts = {text.get_text() for figure in drawn for text in figure.findobj(Text)}
+    for word in words:
+        assert word.replace("$", r"\$") in texts  # as matplotlib writes dollars

@@ -102,6 +102,8 @@ def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
     )  # fmt: skip
     report = Study(folder).report
     assert report.values.value["many"].tolist() == [2, 2, 2]
+    left_out = [[each[:2] for each in report.values.left_out("level", row)] for row in range(3)]
+    assert left_out == [[(2, 3)], [], []]
     assert report.values.value["level"] == pytest.approx([1.375e-3, 2.5e-3, 3.375e-3], rel=1e-15)
     assert report.values.value["wide"] == pytest.approx([0.25e-3, 0.5e-3, 0.25e-3], rel=1e-14)
     assert report.values.value["typical"] == pytest.approx([1.375e-3, 2.5e-3, 3.375e-3], rel=1e-15)

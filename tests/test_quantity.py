@@ -100,6 +100,11 @@ def test_bounds(bounds: Bounds, inside: list[str], outside: list[str], sentence:
     assert str(bounds) == sentence
 
 
+def test_what_is_allowed_is_said_in_a_unit() -> None:
+    assert Bounds(0, 1, low_open=True).said("deg") == "greater than 0 and at most 57.2957795130823 deg"
+    assert [Bounds().said(unit) for unit in ("deg", "1")] == ["any number in deg", "any number"]
+
+
 def test_a_double_is_held_to_doubles_and_is_finite() -> None:
     assert Bounds(0, 0.1).allow(0.1)
     assert not Bounds(0, 0.1, high_open=True).allow(0.1)

@@ -277,6 +277,20 @@ class Values:
         where, (_, kept) = self.layouts[axis.name].groups[row], self._named(self.sheet[name])
         return int(kept[axis.name][where].sum()) if axis.name in kept else where.stop - where.start
 
+    def left_out(self, name: str, row: int) -> Iterator[tuple[int, int, str]]:
+        """Of axes of which a cell does not sum all rows: over how many of how many, and which axis.
+
+        A cell of a group sums those of its group.
+        """
+        own = self.sheet[name].axis
+        for axis, number in self.counted.get(name, {}).items():
+            found = number, self.layouts[axis].size
+            if isinstance(own, GroupAxis) and own.members.name == axis:
+                where = self.layouts[axis].groups[row]
+                found = self.rows_of_group(name, own.members, row), where.stop - where.start
+            if found[0] != found[1]:
+                yield *found, axis
+
     def rows_summed(self, name: str, axis: str) -> int:
         """Over how many rows of an axis a column sums: those without a value do not count."""
         return self.counted.get(name, {}).get(axis, self.layouts[axis].size)

@@ -36,6 +36,7 @@ _TOKEN = re.compile(
 _SIGNS = {
     "cdot": "·", "times": "×", "pm": "±", "le": "≤", "leq": "≤", "ge": "≥", "geq": "≥", "ne": "≠", "neq": "≠",
     "approx": "≈", "sum": "∑", "int": "∫", "prod": "∏", "prime": "′", "partial": "∂", "infty": "∞", "to": "→",
+    "in": "∈",
 }  # fmt: skip
 _LETTERS = {
     "epsilon": "ϵ",
@@ -54,10 +55,12 @@ _LIMITS = frozenset("∑∏")
 
 @lru_cache(maxsize=4096)
 def read(latex: str) -> Notation:
-    """The tree of a formula.
+    r"""The tree of a formula.
 
     >>> read("x_{m}").parts[0].kind, plain(read(r"x_{m}'"))
     ('scripts', 'xm′')
+    >>> plain(read(r"\sum_{k \in q} x_k"))
+    '∑k∈qxk'
     """
     return _Reader(latex).row()
 

@@ -202,13 +202,12 @@ class Said:
         return (*results, *((Items(told, "decided"),) if told else ()))
 
     def _result(self, item: Item) -> HeadlineItem:
-        material, name = self.material, item.cell.name
-        counted = self.report.values.counted.get(name, {}).items()
+        name = item.cell.name
+        column, values = self.report.sheet[name], self.report.values
+        left_out = values.left_out(name, values.row(column, item.cell.label))
         called = self.report.sheet.rows_of
-        left_out = ((called(axis), rows, material.count(axis)) for axis, rows in counted)
-        rows = tuple(f"over {rows} of {size} {axis}" for axis, rows, size in left_out if rows != size)
-        marks = (count for count in self.report.marks.behind(self.report.sheet[name]) if count.number)
-        column = self.report.sheet[name]
+        rows = tuple(f"over {rows} of {size} {called(axis)}" for rows, size, axis in left_out)
+        marks = (count for count in self.report.marks.behind(column) if count.number)
         word = self.report.words(column).get(item.cell.label, "") if column.axis else ""
         meaning = (*self.rich(item.head.meaning), f", {word}" if word else "")
         return HeadlineItem(

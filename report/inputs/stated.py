@@ -388,7 +388,10 @@ def _coverage(
     if "k" in keys:
         return keys["k"]
     if "dof" in keys:
-        raise wrong("LS431", "with degrees of freedom, say the coverage factor itself: k = 2.13")
+        from scipy.special import stdtrit  # which takes long to import
+
+        factor = stdtrit(float(keys["dof"]), (1 + float(keys["p"])) / 2)
+        raise wrong("LS431", f"with degrees of freedom, say the coverage factor itself: k = {factor:.4g}")
     return Fraction(NormalDist().inv_cdf((1 + float(keys["p"])) / 2))
 
 

@@ -117,10 +117,10 @@ def _line(report: Report, cell: Cell) -> str:
     column, name = report.sheet[cell.name], cell.name
     if cell.value is None:
         return cell.reason
-    rows = report.values.counted.get(name, {})
-    sizes = ((n, report.values.layouts[axis].size, report.sheet.rows_of(axis)) for axis, n in rows.items())
-    left = "".join(f"  (over {n} of {size} {called})" for n, size, called in sizes)
+    row = report.values.row(column, cell.label)
+    sizes = report.values.left_out(name, row)
+    left = "".join(f"  (over {n} of {size} {report.sheet.rows_of(axis)})" for n, size, axis in sizes)
     left += "".join(f"  ({count.said})" for count in report.marks.behind(column) if count.number)
-    left += (mark := report.marks.of(name)[report.values.row(column, cell.label)]) and f"  {mark}"
+    left += (mark := report.marks.of(name)[row]) and f"  {mark}"
     left += (doubt := report.uncertain().advice.get(cell.address, "")) and f"  ({doubt})"
     return f"{cell.address:12} {report.text(cell)}  {column.meaning} {column.source}{left}"

@@ -390,7 +390,7 @@ class _Picture:
         labels = [label for trace in own for label in trace.labels]
         held = np.clip(at.T, *np.transpose(self.frame.ends))
         for n in named:
-            far, text = n in beyond, names[n]
+            far, text = n in beyond, mathtext((("", names[n]),))
             if far:
                 cell = report.values.cell(series.y, labels[n]) if series.y in report.sheet else None
                 text += f": {report.text(cell) if cell else format(at[1, n], '.6g')}"
@@ -415,7 +415,8 @@ class _Picture:
         for (_, at), colour in zip(ways, colours, strict=True):
             self.line(at, colour, width)
         for n in evenly(len(ways), SOME_NAMES)[::-1]:
-            self.names.append((ways[n][0], [(ways[n][1][:, -1], BESIDE_END)], {"color": colours[n]}))
+            name = mathtext((("", ways[n][0]),))
+            self.names.append((name, [(ways[n][1][:, -1], BESIDE_END)], {"color": colours[n]}))
         self.key(series, len(own), color=colours[len(colours) // 2], lw=1.4)
 
     def line(self, at: Array, colour: str, width: float) -> None:

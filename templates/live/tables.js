@@ -164,15 +164,17 @@ function howMany(look, margin) {
 // Beside the result: over how many rows it was taken, where some have no value, and how many carry marks.
 function writeCounted(look) {
   for (const element of all(".headline [data-cell]")) {
-    const box = element.parentElement, name = element.dataset.cell;
-    const counted = look.trace.isOk(name, look.trace.row(name, element.dataset.index)) ? look.trace.sheet.counted[name] ?? {} : {};
+    const box = element.parentElement, { sheet, declared } = look.trace, { cell: name, index } = element.dataset;
+    const row = look.trace.row(name, index), counted = look.trace.isOk(name, row) ? Object.keys(sheet.counted[name] ?? {}) : [];
     for (const old of all(".counted", box)) {
       if (!old.previousSibling?.data?.trim()) old.previousSibling?.remove();
       old.remove();
     }
-    for (const [axis, rows] of Object.entries(counted)) {
-      const size = look.trace.sheet.layouts[axis].size;
-      if (rows) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${size} ${rowsOf(axis)}`));
+    for (const axis of counted) {
+      // A result of a group sums the rows of its group.
+      const { starts, size } = sheet.layouts[axis], ends = axisNamed(declared[name].axis)?.of === axis ? starts.slice(row, row + 2) : [0, size];
+      const kept = sheet.kept[name].keep[axis].subarray(...ends), rows = sum(Array.from(kept));
+      if (rows && rows < kept.length) box.append(" ", make("span", { class: "counted" }, `over ${rows} of ${kept.length} ${rowsOf(axis)}`));
     }
     const behind = look.trace.ancestors(name);
     for (const { name, axis } of look.trace.order.filter(({ name, axis }) => axis && behind.has(name))) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -49,6 +50,26 @@ def test_an_edited_reading_moves_its_group(open_page: Callable[..., Live], folde
     )
     assert beside == ["y[2]", "y[6]"]
     assert "over 2\u00a0readings" in (live.page.locator("#bar-source").text_content() or "")
+
+
+def test_over_how_many_readings_is_told_of_each_group(open_page: Callable[..., Live], tmp_path: Path) -> None:
+    """As issued and after an edit: of the group that lacks a reading alone."""
+    rows = tuple((word, "" if n == 2 else y, "1.0") for n, (word, y) in enumerate(grouped.FEW))
+    code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
+    code = code.replace("between within F R2 s apart", "level all_y")
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code)
+    live = opened(folder, open_page)
+
+    def said() -> list[str]:
+        boxes = live.page.locator(".headline [data-cell]").evaluate_all(
+            "all => all.map((one) => one.parentElement.textContent)"
+        )
+        return [" ".join(re.findall(r"over \d+ of \d+ readings", text)) for text in boxes]
+
+    assert said() == ["over 2 of 3 readings", "", "", "over 6 of 7 readings"]
+    live.input("y", 2).click()
+    live.page.keyboard.press("Delete")
+    assert said() == ["over 2 of 3 readings", "over 1 of 2 readings", "", "over 5 of 7 readings"]
 
 
 def test_readings_of_another_group_are_not_pasted(open_page: Callable[..., Live], folder: Path) -> None:
