@@ -113,3 +113,33 @@ def test_a_model_with_corners_and_decimals_is_proved_and_fitted(
     residuals = y.round(4) - 1.02 * theirs[0] * model(X, theirs[1]) - theirs[2] * X**1.5
     assert report.values.value["line_residual"] == pytest.approx(residuals, abs=1e-7)
     assert u == pytest.approx(np.sqrt(np.diagonal(covariance)), rel=1e-3)
+
+
+CORNER = """from sympy import Max
+
+from loopsheet import Method, given, let, measured
+
+
+class Corner(Method, rows="shifts"):
+    t = measured("h", "time at work")
+    most = given("h", "time agreed")
+    over = let(Max(t - most, 0), "time beyond")
+"""
+
+
+def test_of_what_lies_on_a_corner_no_uncertainty_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was exact to first order: only to one side of where it is; draws tell of both."""
+    table = "shift,t [h]\n1,8.25\n2,7.00\n3,8.00\n"
+    folder = written(tmp_path, CORNER, table, '[parameters]\nmost = "8 h, exact"\n')
+    report = Study(folder).computed
+    spread = Spread(report.inputs, report.values)
+    u = [spread.budget("over", row).u for row in range(3)]
+    assert u == pytest.approx([18 / 3**0.5, 0, np.nan], nan_ok=True)  # half of 0.01 h is 18 s
+    assert main(["budget", "over[3]", str(folder), "--draws", "20000"]) == 0
+    told = capsys.readouterr().out
+    assert "over[3] = 0.000 h, and its uncertainty is not known: it has a corner here" in told
+    assert "Monte Carlo, 20000 draws: median 0.0000 h, u = 0.0016 h" in told
+    assert main(["budget", "over[2]", str(folder)]) == 0
+    assert capsys.readouterr().out == "over[2] = 0.0 h, exactly\n"

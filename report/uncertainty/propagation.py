@@ -259,10 +259,9 @@ class Spread:
         own = found[0, : len(self.sources)]
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
-            hidden = self._hidden(cell)[0] and not np.any(found)
-            why = (
-                "its first and second derivatives are 0 here" if hidden else "a derivative has no value here"
-            )
+            why = "a derivative has no value here"
+            if self._hidden(cell)[0] and not np.any(found):
+                why = unlooked or "its first and second derivatives are 0 here"
             own_address = self.values.address(name, row)
             return Budget(own_address, name, label, value, level=level, unlooked=why)
         shares = own / u * (with_correlated(own, self._pairs) / u) if u > 0 else np.zeros(len(own))

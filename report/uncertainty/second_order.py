@@ -129,14 +129,19 @@ class SecondOrder:
         """What has cells of which the terms of second order take away more than half of the first."""
         self.bending = set[str]()
         """What has cells that first order tells near their values, and not as far away as U reaches."""
-        self._value, self._far = values.value, far.value
+        self._value, self._near, self._far = values.value, beside.value, far.value
         self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
         """Which cells change along all errors at once as a power of them that is higher than the first."""
 
     def hides(self, name: str, row: int) -> bool:
-        """Whether a cell changes, but for terms of third order and higher ones alone."""
+        """Whether a cell changes, but for terms of third order and higher ones alone, or beyond a corner."""
         found = self.creeping.get(name)
-        return found is not None and bool(found[row])
+        return found is not None and bool(found[row] or (name in self.cornered and self._moves(name, row)))
+
+    def _moves(self, name: str, row: int) -> bool:
+        """Whether a cell has another value a step away."""
+        there, value = self._near[name][..., row], self._value[name][row]
+        return bool(np.any(np.abs(there - value) > NOISE * abs(value)))
 
     @staticmethod
     def is_small(values: Values, sources: Sequence[ErrorSource]) -> bool:
