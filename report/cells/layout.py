@@ -41,6 +41,11 @@ class Layout:
         return [slice(*each) for each in pairwise(ends)]
 
     @cached_property
+    def group(self) -> NDArray[np.intp]:
+        """In which of these each row is, from 0."""
+        return np.repeat(np.arange(len(self.groups)), [rows.stop - rows.start for rows in self.groups])
+
+    @cached_property
     def lasts(self) -> NDArray[np.intp]:
         """Of rows in groups, the last of each."""
         return np.array([rows.stop - 1 for rows in self.groups], dtype=np.intp)

@@ -14,7 +14,6 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, eye
 
 from ..cells.grid import LONGEST, SLOPES, CellBlock, FilledDown, Place
@@ -338,7 +337,7 @@ class _Printing(Writing):
             factors.append(Symbol(name) if part is None or (spread and name in slopes.spread) else part.value)
         if term.by and term.group is not None and term.rows is not None:
             symbol = f"{term.by} in {term.rows}"
-            self.of_group[symbol] = self.places.columns[term.by], self.group_of(term.rows)
+            self.of_group[symbol] = self.places.columns[term.by], self.layouts[term.rows].group
             factors.append(Symbol(symbol))
         elif term.by:
             factors.append(Symbol(term.by))
@@ -473,12 +472,7 @@ class _Printing(Writing):
         place, axis = self.places.columns[name], self.slopes.quantities[name].axis
         if axis is None:
             return place.cell(0, self.here)
-        return self.fill(place, None if _name(self.axis) == axis else self.group_of(rows))
-
-    def group_of(self, members: str) -> NDArray[np.intp]:
-        """The group of each row."""
-        sizes = [rows.stop - rows.start for rows in self.layouts[members].groups]
-        return np.repeat(np.arange(len(sizes)), sizes)
+        return self.fill(place, None if _name(self.axis) == axis else self.layouts[rows].group)
 
     def solved(self, solved: Any, axis: str | None) -> str:
         """A place in the solution of the equations of a loop."""

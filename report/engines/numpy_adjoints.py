@@ -75,7 +75,7 @@ class _Adding:
         """Add a term."""
         by = self.found[term.by] if term.by else np.ones(1)
         if term.group is not None and term.rows is not None:
-            by = np.repeat(by, [rows.stop - rows.start for rows in self.layouts[term.rows].groups])
+            by = by[self.layouts[term.rows].group]
         product = by * np.ones(self.size(term.rows))
         for name in term.factors:
             product = product * (self.found[name] if name in self.found else self.parts[name])
@@ -115,16 +115,16 @@ class _Adding:
         if slope.index is not None:
             value = value[self.layouts[node.over].rows[slope.index]]
         word, kept = node.word or "sum", self.kept(node.of, node.over)
-        groups = self.layouts[node.over].groups
+        layout = self.layouts[node.over]
         if share.word == "value":
-            return np.array([_place(value[rows][kept[rows]], word, share.place) for rows in groups])
+            return np.array([_place(value[rows][kept[rows]], word, share.place) for rows in layout.groups])
         one, *_ = taken = [self.found[name] for name in share.taken]
         if share.word == "number":
             return np.array([
                 np.sum(kept[rows] & (value[rows] == own))
-                for rows, own in zip(groups, one, strict=True)
+                for rows, own in zip(layout.groups, one, strict=True)
             ], dtype=np.float64)  # fmt: skip
-        taken = [np.repeat(own, [rows.stop - rows.start for rows in groups]) for own in taken]
+        taken = [own[layout.group] for own in taken]
         found: Array = np.zeros(value.shape)
         for one, number in zip(taken[::2], taken[1::2], strict=True):
             found += np.where(kept & (value == one), 1 / number, 0.0)
