@@ -361,3 +361,23 @@ def test_words_of_the_data_are_no_formulas(tmp_path: Path) -> None:
     texts = {text.get_text() for figure in drawn for text in figure.findobj(Text)}
     for word in words:
         assert word.replace("$", r"\$") in texts  # as matplotlib writes dollars
+
+
+NAMED = """from loopsheet import Method, let, mean, measured, plot, trace
+
+
+class Named(Method, rows="coupons"):
+    x = measured("m", "a length")
+    y = measured("m", "a width")
+    wide = let(mean(y), "mean width")
+    plot(trace(x, y, "each", named=True))
+"""
+
+
+def test_rows_with_names_are_named_by_them(tmp_path: Path) -> None:
+    (tmp_path / "workbook.py").write_text(NAMED, encoding="utf-8")
+    (tmp_path / "d.csv").write_text("specimen,x [m],y [m]\nS-17,1.0,1.1\nS-4,2.0,2.3\n", encoding="utf-8")
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n')
+    report = Study(tmp_path).computed
+    (figure,) = (figures.draw(report, each.drawing) for each in figures.of(report) if not each.fixed)
+    assert {"S-17", "S-4"} <= {text.get_text() for text in figure.findobj(Text)}

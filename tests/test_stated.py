@@ -132,7 +132,10 @@ def test_a_shape_behind_a_comma_is_told_where_it_stands(text: str, hint: str) ->
     ("text", "hint"),
     [
         ("+-0.1 normal", "say the coverage factor, once: +-0.1 normal, k = 2"),
-        ("U = 0.2, p = 95 %, dof = 8", "with degrees of freedom, say the coverage factor itself: k = 2.306"),
+        (
+            "U = 0.2, p = 95 %, dof = 8",
+            "with degrees of freedom, say k itself: Student's t, 2.306 for 8 and 95 %",
+        ),
         ("u = 34,8 mm", "a decimal comma? write u = 34.8 mm"),
         ("u = sqrt(x)", "what follows another formula than a share of the reading stands beside it"),
     ],

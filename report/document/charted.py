@@ -8,7 +8,7 @@ from ...derivations.unit_text import is_pure, micro
 from ..cells.address import index_text
 from ..charts import Chart, Series
 from ..result.result import Report
-from ..sheet import Axis, GroupAxis, RepeatAxis
+from ..sheet import Axis, RepeatAxis
 from .material import Material
 from .notation import fragments
 from .tree import Math, Refer
@@ -118,8 +118,8 @@ class Words:
         return axis.of if isinstance(axis, RepeatAxis) else axis
 
     def called(self, axis: Axis, label: tuple[int, ...]) -> str:
-        """What one of its rows is called: a group by its word."""
-        words = self.report.values.words.get(axis.name, {}) if isinstance(axis, GroupAxis) else {}
+        """What one of its rows is called: by its word, if it has one."""
+        words = self.report.values.words.get(axis.name, {})
         return words.get(label) or index_text(label).replace("-", "–")
 
     def count(self, series: Series, number: int) -> str:
