@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 from slipped_campaigns import PAPER, write
-from sympy import Piecewise, Sum, Symbol, acos, exp, log, symbols
+from sympy import Ne, Piecewise, Sum, Symbol, acos, acoth, asin, cos, exp, log, symbols, tan
 from uncertain_data import uncertain
 
 from loopsheet.report.cells.values import Status
@@ -104,7 +104,12 @@ def test_what_is_defined_everywhere(expression: Any) -> None:
 
 
 def test_a_function_of_which_nothing_is_known_is_defined_nowhere() -> None:
-    assert defined(P * acos(x)) == False  # noqa: E712 - sympy's false
+    assert defined(P * acoth(x)) == False  # noqa: E712 - sympy's false
+
+
+def test_where_a_function_ends_or_jumps_is_known() -> None:
+    assert defined(P * acos(x)) == ((x >= -1) & (x <= 1))
+    assert defined(tan(x) + asin(x / 2)) == (Ne(cos(x), 0) & (x / 2 >= -1) & (x / 2 <= 1))
 
 
 def test_a_sum_of_positive_terms_is_positive() -> None:

@@ -14,7 +14,7 @@ import openpyxl
 import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
-from sympy import Expr, Integer, Max, Mul, Piecewise, Rational, Symbol, cos, exp, log, sin, sqrt, sympify
+from sympy import Abs, Expr, Integer, Max, Mul, Piecewise, Rational, Symbol, cos, exp, log, sin, sqrt, sympify
 
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.values import CODES, Status
@@ -283,11 +283,13 @@ def test_javascript_counts_the_same(require: Callable[..., str]) -> None:
         assert reading.status[name] == [CODES[Status(values.status[name][0])]], name
 
 
-def test_max_is_no_slope_that_intervals_cannot_take() -> None:
+def test_roots_are_counted_across_corners() -> None:
     """The slope of a corner is what it is on both sides."""
-    made = sheet(Max(w, 1) - 2, 0, 4)
-    with pytest.raises(Exception, match="cannot compute"):
-        engine.evaluate(made, {}, {})
+    forms = {"one": Max(w, 1) - 2, "none": Max(w, 1) - Rational(1, 2), "both": Abs(w - 2) - 1}
+    found = {name: engine.evaluate(sheet(form, 0, 4), {}, {}) for name, form in forms.items()}
+    codes = {name: CODES[Status(values.status["r"][0])] for name, values in found.items()}
+    assert codes == {"one": "ok", "none": "#NOROOT!", "both": "#TWOROOTS!"}
+    assert found["one"].scalar("r") == 2
 
 
 # ------------------------------------------------------------------------------------ where it is shown

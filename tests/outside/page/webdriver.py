@@ -217,9 +217,17 @@ class Locator:
 
     def click(self) -> None:
         self.ask("one.scrollIntoView({ block: 'center' });")
+        until(self._stands_still, f"{self.selector} to stand still")
         found = self.page.call("FindElement", using="css selector", value=self.selector)
         (element,) = found.values()
         self.page.call("ElementClick", id=element)
+
+    def _stands_still(self) -> bool:
+        """Whether it stays where it is: figures that are drawn later move what stands below them."""
+        where = "return JSON.stringify(one.getBoundingClientRect());"
+        before = self.ask(where)
+        time.sleep(0.05)
+        return bool(self.ask(where) == before)
 
     def inner_text(self) -> str:
         found: str = self.ask("return one.innerText;")
