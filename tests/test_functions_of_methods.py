@@ -143,3 +143,26 @@ def test_of_what_lies_on_a_corner_no_uncertainty_is_told(
     assert "Monte Carlo, 20000 draws: median 0.0000 h, u = 0.0016 h" in told
     assert main(["budget", "over[2]", str(folder)]) == 0
     assert capsys.readouterr().out == "over[2] = 0.0 h, exactly\n"
+
+
+CUBE = """from sympy import log
+
+from loopsheet import Method, given, let, measured
+
+
+class Cube(Method, rows="points"):
+    R = measured("kohm", "resistance", positive=True)
+    R_0 = given("kohm", "reference", positive=True)
+    l = let(log(R / R_0), "logarithm")
+    l3 = let(l**3, "its cube")
+"""
+
+
+def test_of_what_is_of_third_order_alone_no_rounding_is_told(tmp_path: Path) -> None:
+    """What second derivatives are but for rounding was u, a millionth of what it is."""
+    more = '[parameters]\nR_0 = "10 kohm, exact"\n[uncertainty]\nR = "u = 0.003"\n'
+    folder = written(tmp_path, CUBE, "point,R [kohm]\n1,12.500\n2,10.000\n", more)
+    report = Study(folder).computed
+    spread = Spread(report.inputs, report.values)
+    slope = 3 * np.log(1.25) ** 2 * 0.003 / 12.5
+    assert [spread.budget("l3", row).u for row in range(2)] == pytest.approx([slope, np.nan], nan_ok=True)

@@ -127,6 +127,9 @@ def test_what_could_be_thousands_is_refused(read: Reader, findings: Findings) ->
         ("1.029,7", "write '1029,7'"),
         ("1.029", "write '1,029' or '1029', whichever is meant"),
         ("1.029.700,5", "write '1029700,5'"),
+        ("1 029,7", "write '1029,7'"),
+        ("1\u202f029\u00a0700,5", "write '1029700,5'"),
+        ("1'029,7", "write '1029,7'"),
     ],
 )
 def test_a_point_among_decimal_commas_is_told_alone(number: str, hint: str, read: Reader) -> None:

@@ -36,8 +36,9 @@ _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _POINT = re.compile(r"[+-]?[0-9]*\.[0-9].*")
 _POINTED = re.compile(r"[+-]?[0-9]*\.[0-9]+(?:[eE][+-]?[0-9]+)?(?:\([0-9]+\))?")
 """A number with a decimal point."""
-_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]+")
-"""One with points between its thousands."""
+_MARKS = ".' \u00a0\u202f"
+_GROUPED = re.compile(rf"[+-]?[1-9][0-9]{{0,2}}(?:[{_MARKS}][0-9]{{3}})+,[0-9]+")
+"""One with marks between its thousands."""
 _SAYS = re.compile(r'\s*"?sep=(?P<separator>[,;])"?[ \t]*(?:\r\n?|\n)', re.IGNORECASE)
 """A first line that says what stands between the fields."""
 _QUOTE = re.compile(r'"("?)')
@@ -252,7 +253,7 @@ def _pointed(source: Source, rows: list[CsvRow], findings: Findings) -> list[Csv
         _tell_points(source, named, findings)
 
     def pointed(place: int, field: Field) -> Field:
-        text = _without_points(field.text)  # what has points and a comma was told: it is read without
+        text = _without_marks(field.text)  # what has marks and a comma was told: it is read without
         told = _COMMA.fullmatch(text) and place not in worded
         return field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", text)) if told else field
 
@@ -270,20 +271,20 @@ def _tell_doubtful(source: Source, found: Sequence[tuple[str, Field]], findings:
 def _tell_points(source: Source, found: Sequence[tuple[str, Field]], findings: Findings) -> None:
     """Tell each number with a point, where others have decimal commas."""
     for name, field in found:
-        example, either = _without_points(field.text), ""
+        example, either = _without_marks(field.text), ""
         if example == field.text:
             if not _POINTED.fullmatch(field.text):
                 continue  # no number, which is told where it is read
             example = field.text.replace(".", ",")
             if _THOUSANDS.fullmatch(example):
                 either = f" or '{field.text.replace('.', '')}', whichever is meant"
-        at = source.at(field.offset, field.length)
-        findings.add("LS408", at, name=name, text=field.text, example=example, thousands=either)
+        at, mark = source.at(field.offset, field.length), "point" if "." in field.text else "mark"
+        findings.add("LS408", at, name=name, mark=mark, text=field.text, example=example, thousands=either)
 
 
-def _without_points(text: str) -> str:
-    """A number without points between its thousands, if a comma stands behind them."""
-    return text.replace(".", "") if _GROUPED.fullmatch(text) else text
+def _without_marks(text: str) -> str:
+    """A number without marks between its thousands, if a comma stands behind them."""
+    return re.sub(f"[{_MARKS}]", "", text) if _GROUPED.fullmatch(text) else text
 
 
 def _like_number(text: str) -> bool:

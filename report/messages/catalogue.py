@@ -246,7 +246,7 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS408": Entry(
         "point among decimal commas",
-        "{name} has a point: '{text}', where other numbers of the table have decimal commas",
+        "{name} has a {mark}: '{text}', where other numbers of the table have decimal commas",
         "decimal commas in the whole table, or decimal points, and no marks between thousands",
         "write '{example}'{thousands}",
     ),

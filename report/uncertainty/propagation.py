@@ -221,17 +221,23 @@ class Spread:
     def _orders(self, cells: Sequence[tuple[str, int]], own: Any) -> tuple[Array, Array]:
         """The variances of cells, of first order and of second; this is NaN where it is not known.
 
-        A computed value has none less than what the rounding of derivatives that are 0 comes to.
+        A computed value has none less than what the rounding of derivatives that are 0 comes to, nor than
+        what terms of higher order make of it a small step away.
         """
         first, second = self._variance(own), self._more(cells, own)
         computed = [not isinstance(self.values.sheet[name].rule, Given) for name, _ in cells]
         values = np.array([self.values.value[name][row] for name, row in cells])
         noise = ROUNDED * np.minimum(1.0, ROUNDINGS * _largest(own != 0, self._shares))
         with np.errstate(all="ignore"):
-            little = first + np.nan_to_num(second) <= np.square(noise * np.where(computed, values, 0.0))
+            least = np.maximum(np.abs(noise * np.where(computed, values, 0.0)), self._creeping(cells))
+            little = first + np.nan_to_num(second) <= np.square(least)
         first = np.where(little, 0.0, first)
         first[little & self._hidden(cells)] = np.nan
         return first, np.where(little, 0.0 * second, second)
+
+    def _creeping(self, cells: Sequence[tuple[str, int]]) -> Array:
+        """How far cells are from their values a step away, if by terms of third order or higher alone."""
+        return np.array([self.second.creeps(*cell) if self.second else 0.0 for cell in cells])
 
     def _hidden(self, cells: Sequence[tuple[str, int]]) -> NDArray[np.bool_]:
         """Which cells change all the same where what first and second order tell is nothing."""

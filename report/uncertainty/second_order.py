@@ -131,12 +131,16 @@ class SecondOrder:
         """What has cells that first order tells near their values, and not as far away as U reaches."""
         self._value, self._near, self._far = values.value, beside.value, far.value
         self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
-        """Which cells change along all errors at once as a power of them that is higher than the first."""
+        """How far cells change along all errors at once as a power of them that is higher than the first."""
 
     def hides(self, name: str, row: int) -> bool:
         """Whether a cell changes, but for terms of third order and higher ones alone, or beyond a corner."""
+        return self.creeps(name, row) > 0 or (name in self.cornered and self._moves(name, row))
+
+    def creeps(self, name: str, row: int) -> float:
+        """How far a cell is from its value a step away where that is of third order or higher; else 0."""
         found = self.creeping.get(name)
-        return found is not None and bool(found[row] or (name in self.cornered and self._moves(name, row)))
+        return 0.0 if found is None else float(found[row])
 
     def _moves(self, name: str, row: int) -> bool:
         """Whether a cell has another value a step away."""
@@ -297,13 +301,16 @@ def _only_steers(sheet: Sheet, column: Column) -> bool:
     )
 
 
-def _creeps(found: Array, value: Array) -> NDArray[np.bool_]:
-    """Whether cells (3, rows) at one, two and four steps have left their values (rows,) faster and faster."""
+def _creeps(found: Array, value: Array) -> Array:
+    """How far cells (3, rows) are at one step from their values (rows,), if they leave faster and faster.
+
+    `found`: at one, two and four steps.
+    """
     with np.errstate(all="ignore"):
         one, two, four = np.abs(np.broadcast_to(found, (3, value.size)) - value)
         faster: NDArray[np.bool_] = (one > 0) & (two >= 3 * one) & (four >= 3 * two)
         faster &= four > NOISE * np.abs(value)
-    return faster
+    return np.where(faster, one, 0.0)
 
 
 def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], steps: Array) -> Values:
