@@ -216,11 +216,18 @@ class Locator:
         )
 
     def click(self) -> None:
-        self.ask("one.scrollIntoView({ block: 'center' });")
-        until(self._stands_still, f"{self.selector} to stand still")
-        found = self.page.call("FindElement", using="css selector", value=self.selector)
-        (element,) = found.values()
-        self.page.call("ElementClick", id=element)
+        """Click it; what a busy WebKit took for a press alone is done again, as its reader does."""
+        for _ in range(4):
+            self.ask(
+                "one.scrollIntoView({ block: 'center' }); self.clicked = false;"
+                "one.addEventListener('click', () => (self.clicked = true), { once: true, capture: true });"
+            )
+            until(self._stands_still, f"{self.selector} to stand still")
+            found = self.page.call("FindElement", using="css selector", value=self.selector)
+            (element,) = found.values()
+            self.page.call("ElementClick", id=element)
+            if self.page.evaluate("() => self.clicked") is not False:
+                return
 
     def _stands_still(self) -> bool:
         """Whether it stays where it is: figures that are drawn later move what stands below them."""
