@@ -10,10 +10,10 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from sympy import Add, Expr, Function, Integer, Mul, Piecewise, Pow, Symbol, diff, log
+from sympy import Add, DiracDelta, Expr, Function, Integer, Mul, Piecewise, Pow, Symbol, diff, log
 from sympy.core.function import ArgumentIndexError
 
-__all__ = ["differentiated"]
+__all__ = ["beside_corners", "differentiated"]
 
 _ZERO, _ONE = Integer(0), Integer(1)
 
@@ -45,6 +45,11 @@ def differentiated(expression: Expr, by: Symbol) -> Any:
         except ArgumentIndexError:
             pass
     return diff(expression, by)
+
+
+def beside_corners(derivative: Any) -> Any:
+    """A derivative as it is to both sides of where a slope jumps: nothing is infinite there."""
+    return derivative.replace(DiracDelta, lambda *_: _ZERO) if derivative.has(DiracDelta) else derivative
 
 
 def _of_product(factors: tuple[Expr, ...], by: Symbol) -> list[Expr]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -41,12 +42,15 @@ SHEET = Sheet((X, SQUARE, TENFOLD, HUNDREDFOLD, MEAN))
 
 def said(x: str, **published: str) -> Referee:
     """Of the squares of some printed numbers; each published column is printed in a line."""
-    cells = [
+    return found(SHEET, {"x": [pure(text) for text in x.split()]}, in_table(published))
+
+
+def in_table(published: Mapping[str, str]) -> list[PublishedValue]:
+    return [
         PublishedValue("Table", name, () if SHEET[name].axis is None else (row,), pure(text))
         for name, line in published.items()
         for row, text in enumerate(line.split(), 1)
     ]
-    return found(SHEET, {"x": [pure(text) for text in x.split()]}, cells)
 
 
 def changes(of: Referee) -> list[list[tuple[str, str, tuple[int, ...], str]]]:
@@ -189,12 +193,7 @@ def test_within_uncertainty_an_exchange_is_a_possibility(published: dict[str, st
     """The squares of 2.30 and 2.3503 are nearer to each other than u = 0.05 of a side says."""
     u = Error(Fraction("0.05"), said="u = 0.05")
     x = [replace(pure(text), stated=(u,)) for text in ("1.200", "2.3000", "2.3503", "3.100")]
-    cells = [
-        PublishedValue("Table", name, (row,), pure(text))
-        for name, line in published.items()
-        for row, text in enumerate(line.split(), 1)
-    ]
-    of = found(SHEET, {"x": x}, cells)
+    of = found(SHEET, {"x": x}, in_table(published))
     assert of.joint is not None
     assert (of.joint.verdict, of.explanations) == (WITHIN, ())
     assert perhaps in [words.claimed(each.first) for each in of.slips]

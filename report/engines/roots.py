@@ -6,9 +6,9 @@ engine and no model types a derivative.
 
 from __future__ import annotations
 
-from sympy import Abs, Add, Basic, DiracDelta, Expr, Integer, Mul, Pow, Sum, Symbol, exp, factor_terms, log
+from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, exp, factor_terms, log
 
-from ...derivations.differentiated import differentiated
+from ...derivations.differentiated import beside_corners, differentiated
 from ..plan.nodes import RowSum
 
 __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
@@ -17,8 +17,8 @@ __all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
     """The function and its first three derivatives; at a corner those beside it."""
     first = differentiated(function, unknown)
-    second = differentiated(first, unknown).replace(DiracDelta, lambda *_: Integer(0))
-    return function, first, second, differentiated(second, unknown).replace(DiracDelta, lambda *_: Integer(0))
+    second = beside_corners(differentiated(first, unknown))
+    return function, first, second, beside_corners(differentiated(second, unknown))
 
 
 def householder(f: Expr, f1: Expr, f2: Expr, f3: Expr) -> Expr:

@@ -27,7 +27,6 @@ from sympy import (
     Abs,
     Add,
     Derivative,
-    DiracDelta,
     Expr,
     Ge,
     Heaviside,
@@ -50,7 +49,7 @@ from sympy import (
 )
 from sympy.core.function import ArgumentIndexError
 
-from ...derivations.differentiated import differentiated
+from ...derivations.differentiated import beside_corners, differentiated
 from ..axis import Axis, MemberAxis
 from ..column import Column
 from ..sheet import Sheet
@@ -190,7 +189,7 @@ class _Making:
     def part(self, wanted: str, column: Column, axis: Axis | None, expression: Expr) -> str:
         """A new part; its name."""
         # What jumps has no derivative that could be printed; the slope of a corner has one beside it.
-        expression = expression.replace(DiracDelta, lambda *_: S.Zero)
+        expression = beside_corners(expression)
         value = S.NaN if expression.has(*_NO_FUNCTIONS) else expression
         symbol = self.symbol(wanted, Leaf("part", wanted, axis))
         self.nodes.append(Part(column, symbol, axis, value))

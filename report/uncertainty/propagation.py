@@ -232,7 +232,8 @@ class Spread:
             least = np.maximum(np.abs(noise * np.where(computed, values, 0.0)), self._creeping(cells))
             little = first + np.nan_to_num(second) <= np.square(least)
         first = np.where(little, 0.0, first)
-        first[little & self._hidden(cells)] = np.nan
+        asked = np.flatnonzero(little)
+        first[asked[self._hidden([cells[n] for n in asked.tolist()])]] = np.nan
         return first, np.where(little, 0.0 * second, second)
 
     def _creeping(self, cells: Sequence[tuple[str, int]]) -> Array:
