@@ -84,6 +84,7 @@ class Assembly:
         results: Sequence[str],
         worded: Mapping[str, Sequence[str]],
         thinned: Collection[str],
+        times: int,
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
         self.units, self.first, self.results = units, first, results
@@ -98,7 +99,7 @@ class Assembly:
         self.plan = ordered(lowered(whole))
         roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
         self.unrolled = {
-            c.name: unroll(self.plan, roots[c.name], certified(sheet, c))
+            c.name: unroll(self.plan, roots[c.name], certified(sheet, c), times)
             for c in sheet.columns
             if c.name in roots
         }
@@ -407,8 +408,10 @@ def _counting(unrolled: Unrolled) -> tuple[str, ...]:
 def auxiliary_texts(sheet: Sheet, unrolled: Unrolled) -> dict[str, Any]:
     """What computes the cells of an unrolled root of a sheet, printed, as data."""
     issued, counted = unrolled.issued, unrolled.counted
+    name, last = unrolled.column.name, unrolled.cells[-1].step
     return {
-        "column": unrolled.column.name,
+        "column": name,
+        "last": (f"{name}.u_{last - 1}", f"{name}.u_{last}"),
         "check": unrolled.check.name,
         "number": unrolled.number.name,
         "issued": issued and issued.name,

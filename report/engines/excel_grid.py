@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import chain, count
 from types import MappingProxyType
 from typing import Any
@@ -15,7 +16,7 @@ from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, MemberAxis, Sheet
 from .excel_loops import pass_columns, passes_of
-from .excel_values import filled, slope_values
+from .excel_values import auxiliary_values, filled, settles, slope_values
 from .numpy import extend
 
 __all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_passes"]
@@ -26,6 +27,8 @@ _RESERVED = (SCALARS, STEPS, SLOPES, "figures", "published", "equations", "histo
 """Worksheets that are there already, and one that Excel keeps for itself."""
 _LONGEST_NAME = 31
 """Characters of a worksheet's name."""
+_TIMES = (2, 4, 8)
+"""So many times a root's own steps are laid out, the first that settle all rows as they are."""
 
 
 class TooManyRows(ValueError):
@@ -75,12 +78,11 @@ def grid(
 
     worksheets = _worksheets(whole.axes)
 
-    def make() -> dict[str, Any]:
+    def make(times: int) -> dict[str, Any]:
         from .excel_assembly import Assembly
 
-        return Assembly(
-            worksheets, sheet, values.sheet, whole, layouts, counts, units, first, results, beside, thinned
-        ).told()
+        told = worksheets, sheet, values.sheet, whole, layouts, counts, units, first, results, beside
+        return Assembly(*told, thinned, times).told()
 
     own = [
         layouts[axis.name].labels.tolist()
@@ -100,10 +102,16 @@ def grid(
         thinned,
     )
     hangs_on = repr((names, own, words, sizes))
-    told = of_sheet(whole, "formulas of the workbook", [hangs_on], make)
+    for times in _TIMES:
+        parts = [hangs_on, str(times)]
+        told = of_sheet(whole, "formulas of the workbook", parts, partial(make, times))
+        found = [auxiliary_values(every, root) for root in told["roots"]]
+        if all(settles(every, root, own) for root, own in zip(told["roots"], found, strict=True)):
+            break
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     slopes = slope_values(values, sheet, told["slopes"])
-    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), told["roots"], every, slopes)
+    steps = dict(chain.from_iterable(own.items() for own in found))
+    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), steps, every, slopes)
     notes = of_data(told["notes"], dict[str, Place])
     words_at = of_data(told["words"], dict[str, tuple[Place, ...]])
     ways = of_data(told["slopes"]["ways"], dict[str, dict[str, tuple[Product, ...]]])

@@ -10,19 +10,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, sign
+from sympy import Abs, And, Eq, Expr, Integer, Piecewise, Symbol, sign, sqrt, true
 from sympy.logic.boolalg import Boolean
 
 from ...derivations.differentiated import differentiated
 from ..plan.nodes import Leaf, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from ..sheet import Column
 from .excel import IfError, IsNumber
+from .excel_values import SETTLED
 from .roots import derivatives, householder
 
 __all__ = ["Auxiliary", "Unrolled", "unroll"]
 
-_SETTLED = 10**7
-"""A last step smaller than this part of the unknown leaves, by its order, less than rounding does."""
 _PRIMES = "′″‴"
 _DERIVATIVES = ("its derivative", "its second derivative", "its third derivative")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -80,19 +79,20 @@ class Unrolled:
         return self.node.column
 
 
-def unroll(plan: Plan, node: RootNode, certified: bool = True) -> Unrolled:
+def unroll(plan: Plan, node: RootNode, certified: bool = True, times: int = 2) -> Unrolled:
     """Lay the solver of a root out as cells.
 
     `node`: of the plan. `certified`: whether the number of its roots follows from signs for all inputs. No
     formula could count them otherwise: the workbook then keeps to the inputs for which they were counted.
+    `times`: of the rule's steps, after which other engines bisect and a workbook ends.
     """
-    return _Unrolling(plan, node, certified).run()
+    return _Unrolling(plan, node, certified, times).run()
 
 
 class _Unrolling:
     """One root being laid out: the cells so far."""
 
-    def __init__(self, plan: Plan, node: RootNode, certified: bool) -> None:
+    def __init__(self, plan: Plan, node: RootNode, certified: bool, times: int) -> None:
         self.node, self.column, self.certified = node, node.column, certified
         self.rule = node if certified else replace(node, turning=())
         self.unknown, self.form = node.unknown, node.form
@@ -108,14 +108,13 @@ class _Unrolling:
         self.slopes = (
             (differentiated(self.form, self.unknown),) if summed else derivatives(self.form, self.unknown)[1:]
         )
-        # Other engines go on where their steps do not settle; here they end.
-        self.steps = 2 * self.rule.steps
+        self.steps = times * self.rule.steps
         self.now, self.alone = 0, False
 
     def run(self) -> Unrolled:
         places, signs, start = self.ends()
         number, left, right, rising = self.bracket(places, signs)
-        middle = (left + right) / 2
+        middle = self.middle(left, right)
         inside = And(IsNumber(start), start > left, start < right)
         says = "the guess; the middle of the bracket if it lies outside"
         here = self.place("u_0", self.lowered(0), says, Piecewise((start, inside), (middle, True)))
@@ -123,7 +122,7 @@ class _Unrolling:
         for step in range(1, self.steps + 1):
             self.now, before = step, here
             form, left, right, here = self.step(step, left, right, rising, here)
-        known, settled = IsNumber(form), Abs(here - before) * _SETTLED <= Abs(here)
+        known, settled = IsNumber(form), Abs(here - before) * SETTLED <= Abs(here)
         value = self.rule.value.xreplace({self.unknown: here})
         asked = (None, None) if self.certified else (self.told("issued"), self.told("counted"))
         plan = Plan((*self.totals.values(), *self.nodes), self.leaves)
@@ -244,6 +243,12 @@ class _Unrolling:
 
     # --- one step
 
+    def middle(self, left: Symbol, right: Symbol) -> Expr:
+        """The middle of a bracket: of its decades where it may go over three or more."""
+        low, high = self.rule.low, self.rule.high
+        decades = low.is_positive and (high < 1000 * low) != true
+        return sqrt(left) * sqrt(right) if decades else (left + right) / 2
+
     def step(
         self, n: int, left: Symbol, right: Symbol, rising: Symbol, here: Symbol
     ) -> tuple[Symbol, Symbol, Symbol, Symbol]:
@@ -266,7 +271,7 @@ class _Unrolling:
             f"right_{n}", "right", "right end of what is left of the bracket",
             IfError(Piecewise((here, side > 0), (right, True)), right),
         )  # fmt: skip
-        middle, there = (left + right) / 2, here - by
+        middle, there = self.middle(left, right), here - by
         inside = And(there >= left, there <= right)
         moved = Piecewise((here, Eq(f, 0)), (there, inside), (middle, True))
         says = "the unknown after the step; a step out of the bracket is replaced by its middle"

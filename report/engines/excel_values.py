@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from typing import Any
@@ -22,10 +22,14 @@ from .kernels import Array
 from .numpy import Program, parts
 from .numpy_adjoints import computed
 
-__all__ = ["READY", "NotPrintable", "auxiliary_values", "filled", "slope_values"]
+__all__ = ["READY", "SETTLED", "NotPrintable", "auxiliary_values", "filled", "settles", "slope_values"]
 
 READY = "ready"
 """What the first cell says where all precedents have values."""
+
+
+SETTLED = 10**7
+"""A last step smaller than this part of the unknown leaves, by its order, less than rounding does."""
 
 
 class NotPrintable(ValueError):
@@ -34,16 +38,15 @@ class NotPrintable(ValueError):
 
 def filled(
     blocks: Iterable[CellBlock],
-    roots: Iterable[Mapping[str, Any]],
+    found: Mapping[str, tuple[float | str, ...]],
     values: Values,
     slopes: Mapping[str, Array],
 ) -> Iterator[CellBlock]:
     """The blocks of a grid with what they show.
 
-    `roots`: from :func:`~loopsheet.report.engines.excel_assembly.auxiliary_texts`. `values`: all columns,
-    computed, without a batch. `slopes`: from :func:`slope_values`.
+    `found`: from :func:`auxiliary_values`, of all roots. `values`: all columns, computed, without a batch.
+    `slopes`: from :func:`slope_values`.
     """
-    found = {name: cells for root in roots for name, cells in auxiliary_values(values, root).items()}
     for block in blocks:
         what, name, *more = block.shows
         if what == "labels":
@@ -102,6 +105,19 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     shown |= {name: _shown(cells[name], alone if single else ready) for name, _, single in root["cells"]}
     check = (READY if code == Status.OK else CODES[Status(int(code))] for code in codes)
     return shown | {root["check"]: tuple(check)}
+
+
+def settles(values: Values, root: Mapping[str, Any], found: Mapping[str, Sequence[float | str]]) -> bool:
+    """Whether the last step to a root leaves every row that has one where it is.
+
+    `root` and `found`: of :func:`auxiliary_values`.
+    """
+    rows = zip(*(found[name] for name in root["last"]), values.status[root["column"]], strict=True)
+    return all(
+        isinstance(before, float) and isinstance(last, float) and abs(last - before) * SETTLED <= abs(last)
+        for before, last, status in rows
+        if status == Status.OK
+    )
 
 
 def slope_values(values: Values, sheet: Sheet, told: Mapping[str, Any]) -> dict[str, Array]:
