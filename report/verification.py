@@ -194,7 +194,7 @@ def _moves(found: Differences | None) -> Iterator[Check]:
         return
     for move in found.moved:
         was, now, by = moved(move)
-        said = f"{move.address} was {was} and is {now}" + behind(move.unit)
+        said = f"{move.named} was {was} and is {now}" + behind(move.unit)
         yield Check("number", move.address, False, f"{said} ({by})" if by else said)
     for word, names in (("new", found.added), ("not there any more", found.removed)):
         for name in names:

@@ -224,6 +224,21 @@ def test_a_row_that_is_called_otherwise_is_a_difference() -> None:
     assert "tests 2" in as_markdown(found, 20)
 
 
+def test_a_number_that_moved_is_told_with_the_word_of_its_row() -> None:
+    before = replace(RESULT, words={"tests": {1: "oil A", 2: "oil B"}})
+    after = replace(before, cells={**before.cells, "v": replace(V, value=[2.5, 3.5])})
+    lines = as_text(compare(before, after), 20).splitlines()[1:3]
+    assert [line.split() for line in lines] == [
+        ["input", "v[1]", "(oil", "A)", "2", "->", "2.5", "m/s", "+25", "%"],
+        ["input", "v[2]", "(oil", "B)", "3", "->", "3.5", "m/s", "+16.7", "%"],
+    ]
+    assert "v[1] (oil A)" in as_markdown(compare(before, after), 20)
+    # A row that is called otherwise since has no word that is true of both numbers.
+    other = replace(after, words={"tests": {1: "oil C", 2: "oil B"}})
+    assert "v[1] " in (told := as_text(compare(before, other), 20))
+    assert "v[1] (" not in told
+
+
 def test_another_warning_about_the_same_numbers_is_a_difference() -> None:
     warned = replace(RESULT, oddities=[Oddity(kind="limit", name="m", word="warning", sentence="too large")])
     assert not compare(warned, warned).any

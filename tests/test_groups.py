@@ -414,6 +414,24 @@ def test_over_how_many_readings_a_mean_is_is_told_where_that_is_expected(tmp_pat
     assert (told.word, told.message[-36:]) == ("expected", "over 6 of 7 readings, as is expected")
 
 
+def test_a_group_that_lacks_a_reading_is_told_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
+    rows = tuple((word, "" if n == 2 else y, "1.0") for n, (word, y) in enumerate(grouped.FEW))
+    folder = grouped.write(tmp_path, rows, "instrument,y [mm],x [mm]", code)
+    report = Study(folder).computed
+    (told,) = (each for each in report.oddities if (each.kind, each.name) == ("data", "rows"))
+    over = dict(reversed(part.split(" over ")) for part in told.message.split("; "))
+    assert over["2 of 3 readings"].startswith("many[A], level[A]")
+    assert "level" not in over["6 of 7 readings"]
+    assert "[B]" not in told.message
+    assert "[C]" not in told.message
+    for group, said in (("A", "over 2 of 3 readings"), ("B", "over 2 readings")):
+        assert main(["why", f"level[{group}]", str(folder)]) == 0
+        assert f" {said}\n" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("shift", "said"),
     [

@@ -41,6 +41,17 @@ class Move:
     """Before and after."""
     by: tuple[float, str] | None = None
     """The difference in SI with its unit, where a share tells nothing: of temperatures in degC."""
+    word: str = ""
+    """What the row is known by besides its number, in both; empty for none."""
+
+    @property
+    def named(self) -> str:
+        """The address, with the word of its row.
+
+        >>> Move("x[2]", "m", "moved", 1.0, 2.0, ("ok", "ok"), word="Ref A").named
+        'x[2] (Ref A)'
+        """
+        return f"{self.address} ({self.word})" if self.word else self.address
 
     @property
     def relative(self) -> float | None:
@@ -121,17 +132,17 @@ def compare(
             kind, rank = "input", (0, 0)
         elif name in headline:
             kind, rank = "result", (1, headline.index(name))
-        there = new.cells
+        there, words = new.cells, dict(before.known(name).items() & after.known(name).items())
         for index, was in old.cells.items():
             if index not in there:
                 continue
-            now, named = there[index], address(name, index)
+            now, named, word = there[index], address(name, index), words.get(index, "")
             if was == now:
                 same += 1
             elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
                 noise += 1
             else:
-                moved.append(((0, *rank), _move(named, kind, new, was, now, False)))
+                moved.append(((0, *rank), _move(named, word, kind, new, was, now, False)))
             if index in old.uncertainties and index in new.uncertainties:
                 surer = old.uncertainties[index], new.uncertainties[index]
                 if _as_sure(*surer):
@@ -139,7 +150,7 @@ def compare(
                 else:
                     u_was, u_now = ((each, "not known") for each in surer)
                     place = (int(kind == "moved"), *rank)
-                    moved.append((place, _move(f"u({named})", kind, new, u_was, u_now, True)))
+                    moved.append((place, _move(f"u({named})", word, kind, new, u_was, u_now, True)))
     return Differences(
         *names,
         same,
@@ -154,17 +165,17 @@ def compare(
     )
 
 
-def _move(named: str, kind: str, column: Column, was: Held, now: Held, is_u: bool) -> Move:
+def _move(named: str, word: str, kind: str, column: Column, was: Held, now: Held, is_u: bool) -> Move:
     """What moved, in the unit that its column is shown in; uncertainties of degC are differences, in K."""
     (before, status_before), (after, status_after) = was, now
     status = status_before, status_after
     shown = column.shown
     if shown is UNSET or (is_u and shown.zero):
-        return Move(named, column.unit, kind, before, after, status)
+        return Move(named, column.unit, kind, before, after, status, word=word)
     by = None
     if shown.zero and before is not None and after is not None:
         by = after - before, column.unit
-    return Move(named, shown.text, kind, shown.of(before), shown.of(after), status, by)
+    return Move(named, shown.text, kind, shown.of(before), shown.of(after), status, by, word)
 
 
 def _within(was: Held, now: Held, allowed: float) -> bool:

@@ -278,18 +278,19 @@ class Values:
         return int(kept[axis.name][where].sum()) if axis.name in kept else where.stop - where.start
 
     def left_out(self, name: str, row: int) -> Iterator[tuple[int, int, str]]:
-        """Of axes of which a cell does not sum all rows: over how many of how many, and which axis.
+        """Of axes of which a cell does not sum all rows: over how many of how many, and which axis."""
+        for axis in self.counted.get(name, {}):
+            number, size = self.over(name, row, axis)
+            if number != size:
+                yield number, size, axis
 
-        A cell of a group sums those of its group.
-        """
+    def over(self, name: str, row: int, axis: str) -> tuple[int, int]:
+        """Over how many of how many rows of an axis a cell sums; one of a group sums those of its group."""
         own = self.sheet[name].axis
-        for axis, number in self.counted.get(name, {}).items():
-            found = number, self.layouts[axis].size
-            if isinstance(own, GroupAxis) and own.members.name == axis:
-                where = self.layouts[axis].groups[row]
-                found = self.rows_of_group(name, own.members, row), where.stop - where.start
-            if found[0] != found[1]:
-                yield *found, axis
+        if isinstance(own, GroupAxis) and own.members.name == axis:
+            where = self.layouts[axis].groups[row]
+            return self.rows_of_group(name, own.members, row), where.stop - where.start
+        return self.rows_summed(name, axis), self.layouts[axis].size
 
     def rows_summed(self, name: str, axis: str) -> int:
         """Over how many rows of an axis a column sums: those without a value do not count."""

@@ -244,13 +244,11 @@ class _Oddities:
         found: dict[str, list[str]] = {}
         foreseen: dict[str, list[str]] = {}
         for name in self.first(self.values.counted):
-            for axis, rows in self.values.counted[name].items():
-                over = f"over {rows} of {self.values.layouts[axis].size} {self.sheet.rows_of(axis)}"
-                cells = (cell for cell in self.values.cells(name) if cell.value is not None)
-                expected = [self.follows(cell, f"is {over}") for cell in cells]
-                if expected:
-                    which = foreseen if all(expected) else found
-                    which.setdefault(over, []).extend(self.leading_to(name))
+            for row, cell in enumerate(self.values.cells(name)):
+                for rows, size, axis in self.values.left_out(name, row) if cell.value is not None else ():
+                    over = f"over {rows} of {size} {self.sheet.rows_of(axis)}"
+                    which = foreseen if self.follows(cell, f"is {over}") else found
+                    which.setdefault(over, []).extend(self.told_of(cell))
         told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
         if found:
@@ -279,6 +277,16 @@ class _Oddities:
             said = f"{_addresses(missing)} of the result {has} no value"
             said += f", for want of {_some(list(causes))}" * any(cell.culprit for cell in missing)
         return Check(DATA, RESULT, not missing, said, self.inputs.place)
+
+    def told_of(self, cell: Cell) -> list[str]:
+        """What :meth:`leading_to` names: of a group its own cells."""
+        axis, columns = self.sheet[cell.name].axis, self.leading_to(cell.name)
+        if not isinstance(axis, GroupAxis):
+            return columns
+        return [
+            self.values.cell(name, cell.label).address if self.sheet[name].axis == axis else name
+            for name in columns
+        ]
 
     def leading_to(self, name: str) -> list[str]:
         """A column itself; of one that only leads somewhere those that it leads to."""

@@ -13,6 +13,9 @@ from . import markdown as md
 
 __all__ = ["FORMATS", "as_markdown", "as_text", "moved"]
 
+_WIDTH = 16
+"""Characters of a name at least, so that values stand below each other."""
+
 
 def as_text(found: Differences, most: int) -> str:
     """Lines for a terminal.
@@ -20,9 +23,10 @@ def as_text(found: Differences, most: int) -> str:
     `most`: how many numbers, and how many of each other kind, are named; the rest are counted.
     """
     lines = [f"numbers    {_count(found)}"]
+    width = max([_WIDTH, *(len(move.named) for move in found.moved[:most])])
     for move in found.moved[:most]:
         was, now, by = moved(move)
-        lines.append(f"  {move.kind:6}   {move.address:16} {was} -> {now}{_unit(move)}   {by}".rstrip())
+        lines.append(f"  {move.kind:6}   {move.named:{width}} {was} -> {now}{_unit(move)}   {by}".rstrip())
     lines += _rest([move.address for move in found.moved], most)
     for word, changes in _others(found):
         for change in changes[:most]:
@@ -113,7 +117,7 @@ def as_markdown(found: Differences, most: int) -> str:
     rows = []
     for move in found.moved[:most]:
         was, now, by = moved(move)
-        rows.append([md.code(move.address), move.kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
+        rows.append([md.code(move.named), move.kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
     text += _section(["number", "", "before", "after", "by"], rows, [m.address for m in found.moved], most)
     for word, changes in _others(found):
         rows = [[md.code(c.name), md.code(_said(c.before)), md.code(_said(c.after))] for c in changes[:most]]

@@ -169,9 +169,9 @@ def _equation(report: Report, column: Column, row: int, cell: Cell) -> Iterator[
 
 def _over(report: Report, column: Column, row: int, axis: Axis) -> str:
     """Over how many rows of an axis a cell sums; it may be those of its group."""
-    if isinstance(axis, MemberAxis):
-        return f"{report.values.rows_of_group(column.name, axis, row)} {axis.of.name}"
-    return f"{report.values.rows_summed(column.name, axis.name)} {axis.name}"
+    number, size = report.values.over(column.name, row, axis.name)
+    rows = axis.of.name if isinstance(axis, MemberAxis) else axis.name
+    return f"{number} {rows}" if number == size else f"{number} of {size} {rows}"
 
 
 # --- fits ------------------------------------------------------------------------------------------------
