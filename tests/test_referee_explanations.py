@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -10,7 +11,7 @@ from statistics import mean, stdev
 
 import pytest
 from small_report import found, pure
-from sympy import Sum, Symbol, sin
+from sympy import Sum, Symbol, sin, sqrt
 
 from loopsheet.derivations.equation import Equation, Kind
 from loopsheet.derivations.unit_text import parse_unit
@@ -114,6 +115,43 @@ def test_a_radius_for_a_diameter(x: str, square: str, cell: str, factor: str) ->
     assert changes(of) == [[("factor", cell, (), factor)]]
     source = " of Table" if cell == "square" else ""
     assert words.claimed(first(of)) == f"the numbers of {cell}{source} are to be multiplied by {factor}"
+
+
+@pytest.mark.parametrize(
+    ("by", "factor"),
+    [
+        (math.log(10), "1/ln 10"),
+        (1 / math.log(10), "ln 10"),
+        (2 * math.pi, "1/(2π)"),
+        (1 / (2 * math.pi), "2π"),
+        (math.sqrt(2), "1/√2"),
+    ],
+)
+def test_a_column_off_by_what_formulas_are_off_by(by: float, factor: str) -> None:
+    of = said("1.2000 2.3000 3.1000", square=" ".join(f"{x * x * by:.4f}" for x in (1.2, 2.3, 3.1)))
+    assert changes(of) == [[("factor", "square", (), factor)]]
+    assert words.claimed(first(of)) == f"the numbers of square of Table are to be multiplied by {factor}"
+
+
+def test_one_number_is_met_by_many_factors() -> None:
+    assert "factor" not in [one[0][0] for one in changes(said("1.2000", square="3.3157"))]
+
+
+SCATTER = Column("s", None, formula("s", sqrt(Sum((X[k] - Symbol("m")) ** 2, (k, 1, n)) / (n - 1))))
+DRIFT = Column("drift", None, formula("drift", 2 * Symbol("s")))
+M = Column("m", None, formula("m", Sum(X[k], (k, 1, n)) / n), positive=False)
+
+
+@pytest.mark.parametrize(
+    ("cell", "published", "factor"),
+    [("s", "0.7789", "√(3/2)"), ("drift", "1.5578", "√(3/2)"), ("s", "0.954", ""), ("s", "1.168", "√(2/3)")],
+)
+def test_n_for_one_less(cell: str, published: str, factor: str) -> None:
+    """Of 1.2, 2.3 and 3.1: 0.9539 about their mean, 0.7789 were they all there are."""
+    given = {"x": [pure(text) for text in ("1.2000", "2.3000", "3.1000")]}
+    of = found(Sheet((X, M, SCATTER, DRIFT)), given, [PublishedValue("Table", cell, (), pure(published))])
+    own = [one for one in changes(of) if one[0][0] == "factor"]
+    assert own == ([[("factor", cell, (), factor)]] if factor else [])
 
 
 def printed_in(unit: str, text: str) -> Printed:

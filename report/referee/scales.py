@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -27,6 +28,9 @@ POWERS = (-1, 1, -2, 2, -3, 3, -6, 6)
 """By which powers of ten a unit or a decimal point may be wrong, the likelier first."""
 FACTORS = {"2": Fraction(2), "1/2": Fraction(1, 2)}
 """A radius for a diameter, an amplitude for what is between the peaks, and the reverse."""
+CONSTANTS = {"ln 10": math.log(10), "2π": 2 * math.pi, "π": math.pi, "√2": math.sqrt(2)}
+"""By which a formula goes wrong: ln for lg, turns for radians, an effective value for an amplitude. One
+number is met by one of so many by chance: only columns of several are multiplied, or divided, by them."""
 UNITS = (
     ("rad", "deg"), ("s", "min", "h"), ("mm", "in"), ("m/s", "km/h"), ("Pa", "atm", "mmHg"),
     ("J", "cal", "eV"), ("N", "kgf"),
@@ -105,6 +109,11 @@ class _Scale:
 
 _POINTS = tuple(_Scale(Fraction(10) ** n, Change("unit", "", (), "", "", "", power=n)) for n in POWERS)
 _SAME = _Scale(Fraction(1), Change("unit", "", (), "", "", ""))
+_OFTEN = tuple(
+    _Scale(Fraction(factor), Change("factor", "", (), "", "", text))
+    for name, size in CONSTANTS.items()
+    for text, factor in ((name, size), (f"1/({name})" if name[0] == "2" else f"1/{name}", 1 / size))
+)
 _TWICE = tuple(_Scale(factor, Change("factor", "", (), "", "", text)) for text, factor in FACTORS.items())
 
 
@@ -191,13 +200,17 @@ def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | 
 
 
 def misplaced_tables(search: Search) -> Iterator[Explained]:
-    """A published column, or a cell of it, in another unit than is said."""
+    """A published column, or a cell of it, in another unit than is said, or wrong by a factor."""
     problem, asked, changes = search.problem, list[tuple[Problem, Box]](), list[Change]()
     for (source, cell), members in search.groups.items():
         if search.worth(members):
-            for scale in _scales(problem.published[members[0]].printed):
+            more = _OFTEN if len(members) > 1 else ()
+            for scale in (*_scales(problem.published[members[0]].printed), *more):
                 asked.append((_multiplied(problem, members, scale.factor), problem.box))
                 changes.append(scale.column(cell, source))
+            for text, times in _of_counts(problem, members):
+                asked.append((_multiplied(problem, members, *times), problem.box))
+                changes.append(Change("factor", cell, (), source, "", text))
         for n in members if len(members) > 1 else ():
             if search.worth([n]):
                 value = problem.published[n]
@@ -230,9 +243,36 @@ def _off(times: Array, scale: _Scale) -> float:
     return found if np.isfinite(found) else np.inf
 
 
-def _multiplied(problem: Problem, members: Sequence[int], times: Fraction) -> Problem:
-    """The same with some published values so many times as large."""
-    return problem.reprinted({n: _other_unit(problem.published[n].printed, times) for n in members})
+def _of_counts(problem: Problem, members: Sequence[int]) -> Iterator[tuple[str, list[Fraction]]]:
+    """What is off where a sum was divided by n in the place of n - 1, or the reverse; and its square root.
+
+    Of a published column: as it is said, and by what each of its cells has to be multiplied.
+    """
+    sheet, values = problem.campaign.sheet, problem.campaign.values
+    column = sheet[problem.published[members[0]].cell]
+    rows = [problem.places[n][1] for n in members]
+    counts = dict.fromkeys(
+        tuple(values.over(each.name, row, axis.name)[0] for row in rows)
+        for each in (column, *sheet.ancestors(column))
+        if each.axis == column.axis
+        for axis in sheet.summed_axes(each)
+    )
+    for numbers in counts:
+        if min(numbers) > 1:
+            n = "n" if len(set(numbers)) > 1 else str(numbers[0])
+            less = "(n - 1)" if n == "n" else str(numbers[0] - 1)
+            of = [Fraction(number, number - 1) for number in numbers]
+            yield f"{n}/{less}", of
+            yield f"{less}/{n}", [1 / each for each in of]
+            yield f"√({n}/{less})", [Fraction(math.sqrt(each)) for each in of]
+            yield f"√({less}/{n})", [Fraction(math.sqrt(1 / each)) for each in of]
+
+
+def _multiplied(problem: Problem, members: Sequence[int], *times: Fraction) -> Problem:
+    """The same with some published values so many times as large, all of them alike or each by its own."""
+    factors = times if len(times) == len(members) else times * len(members)
+    pairs = zip(members, factors, strict=True)
+    return problem.reprinted({n: _other_unit(problem.published[n].printed, factor) for n, factor in pairs})
 
 
 def _other_unit(of: Printed, times: Fraction) -> Printed:

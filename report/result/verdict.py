@@ -146,9 +146,9 @@ class Change:
     kind: str
     """``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
     ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off by
-    a power of ten, or of another unit), ``factor`` (doubled or halved), ``rows`` (a mean over other rows),
-    ``label`` (two numbers or rows stand in each other's place, or a row holds another column) or ``order`` (a
-    list stands in another order)."""
+    a power of ten, or of another unit), ``factor`` (doubled, divided by n for n - 1, ...), ``rows`` (a mean
+    over other rows), ``label`` (two numbers or rows stand in each other's place, or a row holds another
+    column) or ``order`` (a list stands in another order)."""
     cell: str
     """The column; empty for a row of all columns of a table, and for what was computed of a whole table."""
     index: tuple[int, ...]
