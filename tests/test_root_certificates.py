@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -375,6 +376,35 @@ def test_all_roots_and_every_doubt_are_named_in_every_output(
         f"as issued: {REASONS[0]}",
         f"as issued: {REASONS[3]}",
     ]
+
+
+def test_a_temperature_in_a_workbook_is_as_issued_to_its_last_digit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """273.16 - 273.15 is not 0.01 in doubles, and 0.01 is what stands in the cell of the input."""
+    (tmp_path / "workbook.py").write_text(
+        "from loopsheet import Method, given, let, measured, root, unknown\n\n\n"
+        'class Deg(Method, source="own", rows="points"):\n'
+        '    """A root of each row."""\n\n'
+        '    t = measured("degC", "temperature")\n'
+        '    zero = given("degC", "ice", default="0 degC", exact=True)\n'
+        '    d = let(t - zero, "above it", "K")\n'
+        '    c = given("1/K", "coefficient")\n'
+        "    x = unknown()\n"
+        '    x = root(x + c * d * x**3 + x**5, 2 + c * d, "some number", low=-10, high=40)\n',
+        encoding="utf-8",
+    )
+    report = 'workbook = "workbook.py"\n[parameters]\nc = "0.0010 1/K"\n[measurements]\nfile = "t.csv"\n'
+    (tmp_path / "report.toml").write_text(report, encoding="utf-8")
+    (tmp_path / "t.csv").write_text("point,t [degC]\n1,0.010\n2,29.765\n3,-40.3\n", encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 0
+    assert re.search(r"engine +xlsx +11 cells", capsys.readouterr().out)
+    assert main(["build", str(tmp_path), "--to", "xlsx"]) == 0
+    book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")["points"]
+    at = {str(cell.value): cell.column_letter for cell in reversed(book[4]) if cell.value}
+    assert [book[f"{at['t as issued']}{row}"].value for row in (8, 9, 10)] == [
+        "=0.01", "=29.765", "=-40.3",
+    ]  # fmt: skip
 
 
 def test_an_edited_workbook_takes_no_root_that_was_not_counted(built: Path) -> None:

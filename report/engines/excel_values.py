@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -73,12 +74,22 @@ def filled(
 def _cells(values: Values, name: str, place: Place) -> tuple[float | str | None, ...]:
     """A column's values in the unit of its cells; the code where there is none."""
     # Adding zero leaves no minus on a zero.
-    scale = place.scale
-    shifted = values.value[name] - float(place.zero)
-    numbers = shifted * float(scale.denominator) / float(scale.numerator) + 0.0
+    scale, held = place.scale, values.value[name]
+    numbers = (held * float(scale.denominator) / float(scale.numerator) + 0.0).tolist()
+    if place.zero:
+        numbers = [_of_zero(value, place) for value in held.tolist()]
     codes = {int(status): code for status, code in CODES.items()}
-    pairs = zip(numbers.tolist(), values.status[name].tolist(), strict=True)
+    pairs = zip(numbers, values.status[name].tolist(), strict=True)
     return tuple(number if not status else codes[status] for number, status in pairs)
+
+
+def _of_zero(value: float, place: Place) -> float:
+    """A number in a unit with a zero of its own, without the digits that subtracting it would make up.
+
+    >>> _of_zero(273.16, Place("report", 1, 1, zero=Fraction("273.15")))
+    0.01
+    """
+    return float((Fraction(repr(value)) - place.zero) / place.scale) if math.isfinite(value) else math.nan
 
 
 def _literal(value: float | str | None) -> str:
