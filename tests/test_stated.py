@@ -146,6 +146,12 @@ def test_what_was_meant_is_guessed(text: str, hint: str) -> None:
     assert refused.value.suggestion.startswith(hint)
 
 
+@pytest.mark.parametrize("text", ["u = 6 mm/(L*s)", "U = 12 mm/(L s), k = 2", "+-12 mm/(L*s) normal, k = 2"])
+def test_a_unit_may_have_parentheses(text: str) -> None:
+    (own,) = read_statement(text, parse_unit("m/(L*s)")).of(read_printed("0.1", parse_unit("m/(L*s)")))
+    assert own.u == pytest.approx(6)  # in 1/(m^2 s)
+
+
 def test_percent_of_a_pure_number_is_not_guessed() -> None:
     for unit, size in (("%", "0.5"), ("percent", "0.5"), ("1", "0.005"), ("ppm", "5000")):
         of = parse_unit(unit)
@@ -345,3 +351,16 @@ def test_a_column_of_uncertainties_and_parentheses_are_one_too_many(read: Read) 
     assert [found.code for found in refused.value.diagnostics] == ["LS433"]
     inputs = read(csv=csv.replace("(2)", ""))
     assert [number.u for number in inputs.measured["x_p"]] == [pytest.approx(1e-7), 0]
+
+
+def test_percent_beside_a_pure_number_in_another_unit_is_refused(read: Read) -> None:
+    csv = "test,v [m/s],e [1],u(e) [%],x_p [um]\n1,2.334,0.530,2,23.5\n2,2.940,0.512,2,29.7\n"
+    with pytest.raises(InputError) as refused:
+        read(csv=csv)
+    (found,) = refused.value.diagnostics
+    assert (found.code, found.at.line, found.at.column) == ("LS431", 1, 20)
+    assert 'write each in the unit of its number, u(e) [1]; or of all of them [uncertainty] e = "u = 2 %' in (
+        render(found)
+    )
+    shares = csv.replace("e [1]", "e [%]").replace("0.530", "53.0").replace("0.512", "51.2")
+    assert [number.u for number in read(csv=shares).measured["e"]] == [pytest.approx(0.02)] * 2

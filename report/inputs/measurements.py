@@ -18,6 +18,7 @@ from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_ta
 from .keys import LEFT_OUT
 from .number_text import NumberError, read_printed, read_value
 from .spelling import Alike, alike, in_case, same
+from .stated import PERCENT
 from .taken import Taken, alone
 
 if TYPE_CHECKING:
@@ -367,6 +368,7 @@ class _Reading:
         found = {}
         for name, column in self.columns.items():
             unit, self.of_u[name] = (self._unit(each, column) for each in (name, f"u({name})"))
+            self._check_share(column, unit, self.of_u[name])
             if name in self.places:
                 mode = modes.get(name, "rounded")
                 read = (self._value(row, column, unit, mode) for row in rows if not self.findings.full)
@@ -378,6 +380,17 @@ class _Reading:
         if head is not None and head.unit is not None:
             self.with_units.append(head)  # empty brackets: a pure number
         return unit
+
+    def _check_share(self, column: Measured, unit: ParsedUnit | None, of_u: ParsedUnit | None) -> None:
+        """Refuse percent beside a pure number in another unit: they may be of the number, or of 1."""
+        own, name = unit or parse_unit(column.unit), f"u({column.name})"
+        if of_u is not None and of_u.text in PERCENT and not own.dimension and own.text not in PERCENT:
+            hint = (
+                f"write each in the unit of its number, {name} [{own.text}]; "
+                f'or of all of them [uncertainty] {column.name} = "u = 2 % of reading"'
+            )
+            at = self.table.at(self.table.header[self.places[name]])
+            self.findings.add("LS431", at, text=f"{name} [{of_u.text}]", suggestion=hint)
 
     def _value(self, row: CsvRow, column: Measured, unit: ParsedUnit | None, mode: str) -> Printed | None:
         """A cell, with the uncertainty that its row says."""

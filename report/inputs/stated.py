@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = [
     "EXAMPLE",
     "LARGEST",
+    "PERCENT",
     "SHAPES",
     "Conventions",
     "Of",
@@ -64,9 +65,12 @@ _NAMED = re.compile(r"(?P<name>t scale|t sd|dof|samples|[uUkpsn])\s*=\s*")
 _END = re.compile(r"(?P<name>min|max)\s*=\s*(?P<sign>[+-]?)|(?P<bounds>truncated)")
 _EXPONENTIAL = "exponential"
 _TERM = re.compile(r"(?P<number>[0-9.][0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)")
-_PERCENT = {"%", "percent"}
+PERCENT = ("%", "percent")
+"""Of what is a pure number itself these may be a share of it, or of 1."""
 _RELATIVE = re.compile(r"(?:%|percent)\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
+_CALLED = re.compile(r"[A-Za-z]\(|=\s*\(")
+"""What a formula has, ``u = sqrt(N)``, and a unit has not, ``N/m^(3/2)``."""
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
 _ANYWHERE = Bounds()
 _CUT = {"u", "U"}
@@ -276,7 +280,7 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -
         raise StatementError("LS431", text, start, "say what the number is: u = or U =, or +- and a shape")
     if others and others[0][0][:1].isdigit():
         raise StatementError("LS431", *others[0], f"a decimal comma? write {first}.{others[0][0]}")
-    if "(" in first and begin:
+    if begin and _CALLED.search(first):
         hint = "what follows another formula than a share of the reading stands beside it, in a column u(...)"
         raise StatementError("LS431", first, start, hint)
     word = None if begin else _SHAPE.search(first)
@@ -452,9 +456,9 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             digits += number
         elif _RELATIVE.fullmatch(behind) and unit.zero:
             raise StatementError("LS431", term, at, f"zero {unit.text} is not nothing: say how much, in K")
-        elif _RELATIVE.fullmatch(behind) and (behind not in _PERCENT or unit.dimension):
+        elif _RELATIVE.fullmatch(behind) and (behind not in PERCENT or unit.dimension):
             relative += number / 100
-        elif behind in _PERCENT:  # of what is a pure number: of the reading, or of 1?
+        elif behind in PERCENT:  # of what is a pure number: of the reading, or of 1?
             size = f"{float(number / 100 / unit.scale):.15g}"
             hint = f"say '{match['number']} % of reading', or '{size}' for that much in its unit {unit.text}"
             raise StatementError("LS431", term, at, hint)
