@@ -491,7 +491,7 @@ def test_stated_uncertainties_explain_what_digits_do_not(
     assert referee.joint is not None
     assert [table.verdict for table in (*referee.tables, referee.joint)] == [together] * 2
     said = list(lines(referee, str))
-    told = "another measurement would explain it, the printed digits do not" in said[0]
+    told = "another measurement would explain it, the printed digits by themselves do not" in said[0]
     assert told == (together == WITHIN)
     # nobody is accused of what is explained, and of what is not still somebody is asked for
     assert referee.asked_why == (together == UNREACHABLE)

@@ -9,23 +9,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 
 import numpy as np
 
 from ..result.verdict import INPUT, Change, Tried
 from ..result.verdict_words import mismatch as in_words
-from .comparison import prints_same
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, exchanged_rows, orders
 from .habits import (
+    CHOSEN_FOR_ONE,
+    NEUTRAL,
     computed_from_printed,
     every_row,
+    neglected,
     other_conventions,
     other_rows,
     rounded_constants,
     without_a_test,
 )
-from .misprints import misprint, misprints, two_misprints
+from .misprints import misprint, misprints, slipped, two_misprints
 from .problem import Problem
 from .scales import (
     misplaced_inputs,
@@ -36,7 +39,7 @@ from .scales import (
 )
 from .search import Explained, Search
 
-__all__ = ["Doubts", "Explained", "explanations"]
+__all__ = ["Doubts", "Explained", "explanations", "possibilities"]
 
 Kind = Callable[[Search], Iterator[Explained]]
 
@@ -44,7 +47,7 @@ KINDS: tuple[tuple[Kind, ...], ...] = (
     (computed_from_printed, every_row, other_conventions, rounded_constants),
     (
         truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, exchanged_rows, columns,
-        without_a_test, other_rows, misplaced_inputs, misplaced_tables, misprints,
+        without_a_test, other_rows, neglected, misplaced_inputs, misplaced_tables, misprints,
     ),
     (orders, misplaced_together, two_misprints),
 )  # fmt: skip
@@ -79,11 +82,26 @@ def explanations(
         least = min((each.explanation.count for each in found), default=None)
         if least == 0 or (least is not None and kinds is not KINDS[0]):
             break
-    doubts = Doubts.of(problem)
+    doubts = Doubts.of(search)
     if doubts.alone is not None and least == 0:  # no misprints were looked for
         found += filter(doubts.is_slip_of_it, misprint(search, doubts.alone))
     equal = [each for each in found if each.explanation.count == least or doubts.is_slip_of_it(each)]
     return tuple(sorted(equal, key=doubts.likelihood)), Tried(len(found), search.excluded, search.open)
+
+
+def possibilities(problem: Problem) -> tuple[Explained, ...]:
+    """What would explain what the stated uncertainties explain as well: a habit, or one slip."""
+    search = Search(problem)
+    kinds = (
+        *KINDS[0],
+        truncated_inputs,
+        truncated_tables,
+        neglected,
+        slipped,
+        exchanged_in_tables,
+        exchanged_rows,
+    )
+    return tuple(chain.from_iterable(kind(search) for kind in kinds))
 
 
 @dataclass(frozen=True)
@@ -98,11 +116,9 @@ class Doubts:
     """Given cells that are known to be what they are printed as."""
 
     @classmethod
-    def of(cls, problem: Problem) -> Doubts:
+    def of(cls, search: Search) -> Doubts:
         """Those of published values that do not come out of one input."""
-        cells = problem.at(problem.box.start).cells.tolist()
-        both = zip(problem.published, cells, strict=True)
-        other = [n for n, (value, cell) in enumerate(both) if not prints_same(cell, value.printed)]
+        problem, other = search.problem, search.differing
         held = (problem.unknowns[n] for n in np.flatnonzero(problem.box.width == 0))
         exact = frozenset((unknown.column, unknown.index) for unknown in held)
         if len(other) != 1:
@@ -116,33 +132,50 @@ class Doubts:
         own = change.kind == "misprint" and (change.source, change.cell, change.index) == self.its
         return own and not others and is_slip(change.printed, change.would_print)
 
-    def likelihood(self, each: Explained) -> tuple[int, float, float]:
+    def _is_any_number(self, change: Change) -> bool:
+        """Whether what is exact would be another number, found among so many that one always does."""
+        if change.kind == "parameter":
+            return self.alone is not None and _digits(change) > CHOSEN_FOR_ONE
+        is_misprint = (change.kind, change.source) == ("misprint", INPUT)
+        return is_misprint and (change.cell, change.index) in self.exact
+
+    def likelihood(self, each: Explained) -> tuple[int, bool, float, float]:
         """What is likelier comes first: what holds for many numbers or is one slip, then what is met best.
 
-        Before all stands what accuses nobody, then one slip where one value alone does not print; last stands
-        another number for one that is exact.
+        Before all stands what accuses nobody, then one slip where one value alone does not print, or what was
+        left out altogether; last stands another number for one that is exact. Of other digits those of the
+        value that alone does not print come first.
         """
         change = each.explanation.first
-        where = change.cell, change.index
         # A convention with many digits can be made to fit, as the digits of a misprint can.
         long = change.kind == "parameter" and len(change.would_print) > len("1.25")
         plain = change.kind == "misprint" and not is_slip(change.printed, change.would_print)
         order = 2 if plain or long else 1 if change.kind == "misprint" else 0
         if each.explanation.as_printed:
             order = -2
-        elif self.is_slip_of_it(each) or _is_rounding(change):
+        elif self.is_slip_of_it(each) or _is_rounding(change) or _is_neglect(change):
             order = -1
-        elif (change.kind, change.source) == ("misprint", INPUT) and where in self.exact:
+        elif self._is_any_number(change):
             order = 3
-        return order, float(in_words(each.explanation.mismatch)), _digits_moved(change)
+        elsewhere = (change.source, change.cell, change.index) != self.its
+        return order, elsewhere, float(in_words(each.explanation.mismatch)), _digits_moved(change)
+
+
+def _is_neglect(change: Change) -> bool:
+    """Whether a parameter was taken as if there were none of it."""
+    return change.kind == "parameter" and change.would_print in NEUTRAL
 
 
 def _is_rounding(change: Change) -> bool:
     """Whether a parameter was taken with fewer digits than it has."""
     if change.kind != "parameter" or change.count:
         return False
-    digits = len(change.would_print.partition("e")[0].replace(".", "").lstrip("-0"))
-    return change.would_print == f"{float(change.printed):.{digits}g}"
+    return change.would_print == f"{float(change.printed):.{_digits(change)}g}"
+
+
+def _digits(change: Change) -> int:
+    """How many a number has that would have to stand."""
+    return len(change.would_print.partition("e")[0].replace(".", "").lstrip("-0"))
 
 
 def _digits_moved(change: Change) -> float:

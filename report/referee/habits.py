@@ -10,14 +10,15 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..engines.numpy import Program, evaluate
 from ..result.verdict import INPUT, Change
 from ..sheet import Axis, Column, Formula, Given, Sheet
 from .campaign import Array, Campaign
-from .minimax import best
+from .minimax import Best, best
 from .misprints import freed
-from .problem import Problem
+from .problem import Box, Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
@@ -30,8 +31,12 @@ __all__ = [
     "without_a_test",
 ]
 
+NEUTRAL = ("0", "1")
+"""What a correction is that is not made, and a factor."""
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
+CHOSEN_FOR_ONE = 2
+"""The same where one published value alone is another: some number always yields that."""
 MOST_TESTS = 100
 """Of more than so many none is left out of all averages at a time: with a hundred a check takes a minute."""
 
@@ -52,7 +57,9 @@ def computed_from_printed(search: Search) -> Iterator[Explained]:
         some = [those for those in combinations(habits, number) if _apart(those) and _worth(search, those)]
         asked = [(_computed(search.problem, those), None) for those in some]
         found = search.likeliest(asked)
-        for n, now in found:
+        # From more columns they were computed only if that makes a difference.
+        different = {(_members(some[n]), now.mismatch): (n, now) for n, now in reversed(found)}
+        for n, now in reversed(different.values()):
             problem = asked[n][0]
             yield search.explained([habit.change for habit in some[n]], problem, problem.box, now)
         if found:
@@ -298,17 +305,46 @@ def _other_number(search: Search, column: Column) -> Iterator[Explained]:
     point = freed(search, problem, n)
     if point is None:
         return
+    printed = problem.campaign.inputs.parameters[column.name]
     for digits in range(1, MOST_DIGITS + 1):
-        value = float(f"{point[n]:.{digits}g}")
-        box = replace(problem.box, start=point).moved([n], [value], [value], [value])
-        now = best(problem, box)
+        text = f"{float(f'{printed.of(point[n]):.{digits}g}'):g}"
+        now, box = _taken_as(problem, n, text, point)
         if now.mismatch <= 1:
-            change = _change(problem, column, f"{value:g}")
-            if digits > CHOSEN:
+            change = _change(problem, column, text)
+            if digits > (CHOSEN if len(search.differing) > 1 else CHOSEN_FOR_ONE):
                 change = replace(change, count=1)
             yield search.explained([change], problem, box, now)
             return
     search.drop(certain=False)
+
+
+def _taken_as(problem: Problem, n: int, text: str, start: Array) -> tuple[Best, Box]:
+    """What comes out where a given cell is another number, in the unit of its print."""
+    printed = problem.campaign.inputs.parameters[problem.unknowns[n].column]
+    value = float(Fraction(text) * printed.scale + printed.zero)
+    box = replace(problem.box, start=start).moved([n], [value], [value], [value])
+    return best(problem, box), box
+
+
+def neglected(search: Search) -> Iterator[Explained]:
+    """A parameter that was taken as if there were none of it: a correction of 0, or a factor of 1."""
+    own = search.problem
+    for name, printed in own.campaign.inputs.parameters.items():
+        column = own.campaign.sheet[name]
+        touches = _resting_on(own, [name])
+        if not (own.campaign.suspects(name) and touches and search.worth(touches)):
+            continue
+        problem = Problem.of(own.campaign, own.published, asked=(name,))
+        for n in problem.rows.get(name, ()):
+            for text in NEUTRAL[: 0 if printed.zero else 2 if is_pure(printed.unit) else 1]:
+                value = Fraction(text) * printed.scale
+                if value == printed.value or not problem.unknowns[n].allowed.allow(value):
+                    continue
+                now, box = _taken_as(problem, n, text, problem.box.start)
+                if now.mismatch <= 1:
+                    yield search.explained([replace(_change(own, column, text), count=1)], problem, box, now)
+                else:
+                    search.drop(certain=False)
 
 
 def rounded_constants(search: Search) -> Iterator[Explained]:

@@ -33,13 +33,10 @@ from ..sheet import Given, Sheet
 from .campaign import Campaign
 from .certificate import Certificate
 from .comparison import missing_as_expected, prints_same
-from .exchanges import exchanged_in_tables, exchanged_rows
-from .explain import Explained, explanations
+from .explain import Explained, explanations, possibilities
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
-from .misprints import slipped
 from .problem import Problem
-from .search import Search
 from .values import verdicts
 
 __all__ = ["referee"]
@@ -111,9 +108,8 @@ def referee(
         explained, tried = _explained(whole, step)
     slips: tuple[Explained, ...] = ()
     if found.mismatch > 1 and joint.verdict == WITHIN:
-        step("refereeing what one slip would explain")
-        search = Search(whole)
-        slips = (*slipped(search), *exchanged_in_tables(search), *exchanged_rows(search))
+        step("refereeing what a habit or one slip would explain")
+        slips = possibilities(whole)
     first = explained[0] if explained else None
     workbook = inputs.workbook
     fit: tuple[Fit, ...] = ()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..result.verdict import Change, Explanation
 from .certificate import Certificate, excluded
+from .comparison import prints_same
 from .conflicts import Conflict, Conflicts
 from .minimax import Best, best, meet
 from .problem import Box, Problem
@@ -54,6 +56,13 @@ class Search:
         self.groups: dict[tuple[str, str], list[int]] = {}
         for n, value in enumerate(problem.published):
             self.groups.setdefault((value.source, value.cell), []).append(n)
+
+    @cached_property
+    def differing(self) -> list[int]:
+        """The published values that do not print as they are recomputed."""
+        problem = self.problem
+        both = zip(problem.published, problem.at(problem.box.start).cells.tolist(), strict=True)
+        return [n for n, (value, cell) in enumerate(both) if not prints_same(cell, value.printed)]
 
     def resting_on(self, unknowns: Iterable[int]) -> frozenset[int]:
         """The published values that rest on some unknowns."""

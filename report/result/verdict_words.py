@@ -190,7 +190,7 @@ def together(table: TableVerdict) -> str:
             return (
                 f"no input that prints as given was found from which {whose} {come} out; the best leaves "
                 f"a mismatch of {off}. One that is as near as the stated uncertainties say was found: "
-                "another measurement would explain it, the printed digits do not"
+                "another measurement would explain it, the printed digits by themselves do not"
             )
         case "unreachable":
             because = f". {table.because} alone makes that certain" if table.because else ""
