@@ -541,14 +541,14 @@ def test_findings_are_sorted_by_file_line_and_column() -> None:
 
 
 def test_a_long_or_evil_word_is_cut_and_made_visible() -> None:
-    finding = diagnose("LS312", text="\x1b" + "{text}" * 1000)
-    assert finding.message == "not a test number: '\\x1b" + ("{text}" * 10)[:56] + "...'"
+    finding = diagnose("LS312", name="test", suggestion="", text="\x1b" + "{text}" * 1000)
+    assert finding.message == "'\\x1b" + ("{text}" * 10)[:56] + "...' is no number of a test"
 
 
 def test_past_a_thousand_findings_the_rest_is_dropped() -> None:
     findings = errors.Findings()
     for _ in range(1500):
-        findings.add("LS312", text="x")
+        findings.add("LS312", name="test", text="x", suggestion="")
     assert findings.full
     with pytest.raises(InputError) as caught:
         findings.check()

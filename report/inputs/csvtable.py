@@ -188,7 +188,9 @@ def _report_widths(
             more = 'what has a comma in it stands in quotes: "r(a, b)"'
         if empty and not (comma and any(halves)):
             more = "a separator too many stands at the end of the row"
-        findings.add("LS306", at, found=len(row.fields), wanted=wanted, suggestion=more)
+        number = len(row.fields)
+        found = f"{number} field{'s' if number > 1 else ''}"
+        findings.add("LS306", at, found=found, wanted=wanted, suggestion=more)
 
 
 def _looks_comma(row: CsvRow, wanted: int) -> bool:

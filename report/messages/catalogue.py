@@ -148,7 +148,7 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS306": Entry(
         "wrong number of fields",
-        "the row has {found} fields, the first line has {wanted}",
+        "the row has {found}, the first line has {wanted}",
         "{wanted} fields",
         "{suggestion}",
     ),
@@ -173,7 +173,10 @@ CATALOGUE: dict[str, Entry] = {
         "give each {name} a number of its own",
     ),
     "LS312": Entry(
-        "not a test number", "not a test number: '{text}'", "a positive whole number such as 1, 2, 3"
+        "not the number of a row",
+        "'{text}' is no number of a {name}",
+        "a positive whole number such as 1, 2, 3",
+        "{suggestion}",
     ),
     "LS313": Entry(
         "quote not closed",

@@ -98,7 +98,7 @@ def _sure(report: Report, name: str, row: int) -> str:
         return ""
     value, short = report.stated(name, float(report.values.value[name][row]), u)
     unit = _unit(report, name)
-    return f"u = {short.plain}{unit}, of {value.plain}{unit}; 'loopsheet budget' tells where it comes from"
+    return f"u = {short.text}{unit}, of {value.text}{unit}; 'loopsheet budget' tells where it comes from"
 
 
 def _is_given(column: Column) -> bool:
