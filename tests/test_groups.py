@@ -8,6 +8,7 @@ from pathlib import Path
 
 import grouped
 import numpy as np
+import openpyxl
 import pytest
 
 import loopsheet
@@ -465,3 +466,27 @@ def test_a_row_is_found_by_its_word(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert re.findall(r"y\[\d\]", capsys.readouterr().out) == ["y[5]", "y[7]"]
     assert main(["show", "level[D]", folder]) == 2
     assert "1, 2 or 3; or A, B or C" in capsys.readouterr().err
+
+
+def test_the_first_worksheet_tells_results_with_their_uncertainties(tmp_path: Path) -> None:
+    code = grouped.METHOD.replace("between within F R2 s apart", "level all_y")
+    folder = grouped.write(tmp_path, code=code, more='[uncertainty]\ny = "u = 0.02 mm"\n')
+    build.build(Study(folder), folder / "out", ("xlsx",))
+    formulas, values = (
+        openpyxl.load_workbook(folder / "out" / "report.xlsx", data_only=now) for now in (False, True)
+    )
+    of: dict[str, str] = {}
+    title = ""
+    for name, value, *_ in values["uncertainty"].iter_rows(values_only=True):
+        title = str(name).partition(" [")[0] if " [mm]: " in str(name) else title
+        of |= {title: str(value)} if name == "statement" else {}
+    told = {}
+    for shown, behind in zip(values["report"].iter_rows(), formulas["report"].iter_rows(), strict=True):
+        for now, formula in zip(shown, behind, strict=True):
+            if str(formula.value).startswith("=uncertainty!"):
+                told[str(shown[0].value)] = str(now.value)
+                at = str(formula.value).rpartition("!")[2].replace("$", "")
+                assert values["uncertainty"][at].value == now.value
+    assert told == of
+    assert told["all_y"] == "(2.321 ± 0.015) mm, k = 1.96"
+    assert told.keys() == {"all_y", "level[A]", "level[B]", "level[C]"}

@@ -333,12 +333,10 @@ class _Reading:
             if not text:
                 self.findings.add("LS403", at, name=called, allowed="a positive whole number", suggestion="")
             elif not _TEST.fullmatch(text):
-                hint = (
-                    ""
-                    if is_number(text)
-                    else "a line that sums rows up does not belong here: the method computes it"
+                hint = "a line that sums rows up does not belong here: the method computes it"
+                self.findings.add(
+                    "LS312", at, name=called, text=text, suggestion="" if is_number(text) else hint
                 )
-                self.findings.add("LS312", at, name=called, text=text, suggestion=hint)
             elif int(text) in lines:
                 self.findings.add("LS311", at, name=called, text=text, first=lines[int(text)])
             else:

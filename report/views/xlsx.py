@@ -70,15 +70,14 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     names += [SLOPES] if grid.on(SLOPES) else []
     names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}
-    write_report(sheets[SCALARS], style, report, grid, inputs)
+    stated = write_budgets(sheets[BUDGETS], style, report, grid) if BUDGETS in sheets else {}
+    write_report(sheets[SCALARS], style, report, grid, inputs, stated)
     for name in grid.axes:
         write_axis(sheets[name], name, style, report, grid, inputs)
     if STEPS in sheets:
         write_steps(sheets[STEPS], style, report, grid)
     if _PUBLISHED in sheets:
         write_published(sheets[_PUBLISHED], style, report, grid)
-    if BUDGETS in sheets:
-        write_budgets(sheets[BUDGETS], style, report, grid)
     if SLOPES in sheets:
         write_slopes(sheets[SLOPES], style, grid)
     if _CARDS in sheets:

@@ -16,7 +16,7 @@ from functools import cached_property
 from itertools import islice
 from typing import Any
 
-from ..cells.grid import LONGEST, CellBlock, Grid, Product, checked, factors, letters
+from ..cells.grid import BUDGETS, LONGEST, CellBlock, Grid, Product, checked, factors, letters
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
 from ..result.numbers import LEADING, SURE, rounded
@@ -72,8 +72,8 @@ def told_budgets(report: Report) -> list[Budget]:
     return [each for each in (*results.values(), *others) if each.is_known and each.u > 0]
 
 
-def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
-    """Write them, one below the other."""
+def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> dict[str, tuple[str, str]]:
+    """Write them, one below the other; return the formula and the text of each cell's statement."""
     said = "Estimates follow the sheet; yellow cells may be changed."
     budgets = told_budgets(report)
     fixed = any(_Written(sheet, style, report, grid, each, 0, "").is_fixed for each in budgets)
@@ -82,9 +82,14 @@ def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     widths = (width for _, width in (*_COLUMNS, *[("", 12)] * (_AS_ISSUED - len(_COLUMNS) + 2)))
     style.page(sheet, "uncertainty: where that of the results comes from", said, widths)
     issued, row = _write_as_issued(sheet, style, report, grid) if fixed else "TRUE", 3
+    stated = {}
     for budget in budgets:
-        row = _Written(sheet, style, report, grid, budget, row, issued).write() + 2
+        written = _Written(sheet, style, report, grid, budget, row, issued)
+        row = written.write() + 2
+        if written.stated is not None:
+            stated[budget.cell] = written.stated
     sheet.freeze_panes(3, 1)
+    return stated
 
 
 def _write_as_issued(sheet: Any, style: Style, report: Report, grid: Grid) -> str:
@@ -125,6 +130,8 @@ class _Written:
     ) -> None:
         self.issued = issued
         """The formula that says whether the inputs are as issued."""
+        self.stated: tuple[str, str] | None = None
+        """The formula that names the cell of its statement, and what that says now; None before it stands."""
         self.sheet, self.style, self.report, self.grid, self.budget = sheet, style, report, grid, budget
         self.block: CellBlock = grid[budget.name]
         self.scale = float(self.block.place.scale)
@@ -486,6 +493,7 @@ class _Written:
         now = f"({plain[0]} ± {plain[1]}){f'E{by}' if by else ''}{unit}, k = {budget.factor:.2f}"
         style.text(sheet, row + len(steps), 0, "statement", "name")
         style.formula(sheet, row + len(steps), 1, formula, now, style("text"))
+        self.stated = f"={BUDGETS}!$B${row + len(steps) + 1}", now
         return row + len(steps) + 1
 
 

@@ -20,13 +20,20 @@ from .xlsx_tables import mark_errors, write_block
 
 __all__ = ["write_equations", "write_published", "write_report"]
 
+_WITH_U = "with its uncertainty"
 MOST_ROWS = 50
 """Of a result that stands on a worksheet of rows; of more, nobody reads them twice."""
 
 # --- the result and the scalars -----------------------------------------------------------------------------
 
 
-def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: GivenCells) -> None:
+Stated = Mapping[str, tuple[str, str]]
+"""By cell, the formula that names its statement with its uncertainty, and what that says."""
+
+
+def write_report(
+    sheet: Any, style: Style, report: Report, grid: Grid, inputs: GivenCells, stated: Stated
+) -> None:
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
     scalars = grid.on(SCALARS, "given", "computed", "margin")
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
@@ -35,14 +42,16 @@ def write_report(sheet: Any, style: Style, report: Report, grid: Grid, inputs: G
     row = 2  # of what is told there, if there are no scalars
     for group in _groups(scalars):
         row, given = group[0].place.row, group[0].kind == "given"
-        style.section(sheet, row - 2, _title(report, group), 7)
-        last = ("as checked", "check") if given else ("computed from",)
+        said = [block.name for block in group if block.name in stated]
+        style.section(sheet, row - 2, _title(report, group), 8 if said else 7)
+        last = ("as checked", "check") if given else ("computed from", *((_WITH_U,) if said else ()))
         for at, head in enumerate(("name", "value", "unit", "meaning", "equation", "symbol", *last)):
             style.text(sheet, row - 1, at, head, "head")
         for block in group:
             row = block.place.row
             _write_scalar(sheet, style, report, grid, block, inputs)
-    row = _write_results_in_rows(sheet, style, report, grid, row)
+            _write_statement(sheet, style, stated, block.name, row, CHECKED + 1)
+    row = _write_results_in_rows(sheet, style, report, grid, row, stated)
     _write_notes(sheet, style, report, grid, row + 2)
     for column in (1, CHECKED, CHECKED + 1):
         mark_errors(sheet, style, 0, column, row, column)
@@ -89,7 +98,15 @@ def _write_scalar(
         style.formula(sheet, row, 6, formula, value, style("text"), array=True)
 
 
-def _write_results_in_rows(sheet: Any, style: Style, report: Report, grid: Grid, row: int) -> int:
+def _write_statement(sheet: Any, style: Style, stated: Stated, cell: str, row: int, column: int) -> None:
+    """Write a result with its uncertainty, if that is known, as its budget has it."""
+    if cell in stated:
+        style.formula(sheet, row, column, *stated[cell], style("text"))
+
+
+def _write_results_in_rows(
+    sheet: Any, style: Style, report: Report, grid: Grid, row: int, stated: Stated
+) -> int:
     """Show results that other worksheets compute, one for each group, say; return the last row."""
     named = [report.sheet[name] for name in report.workbook.headline if name in report.sheet]
     for column in named:
@@ -98,8 +115,9 @@ def _write_results_in_rows(sheet: Any, style: Style, report: Report, grid: Grid,
         block, row = grid[column.name], row + 2
         style.section(sheet, row, f"Result: {block.meaning}", 7)
         for own, figure in enumerate(report.figures(column.name)):
-            row += 1
-            style.text(sheet, row, 0, report.values.address(column.name, own), "name")
+            row, cell = row + 1, report.values.address(column.name, own)
+            style.text(sheet, row, 0, cell, "name")
+            _write_statement(sheet, style, stated, cell, row, 3)
             form = style("result", number_format(figure))
             style.formula(sheet, row, 1, f"={block.place.cell(own)}", block.values[own], form)
             style.text(sheet, row, 2, block.unit, "unit")
