@@ -119,8 +119,14 @@ class Words:
 
     def called(self, axis: Axis, label: tuple[int, ...]) -> str:
         """What one of its rows is called: by its word, if it has one."""
-        words = self.report.values.words.get(axis.name, {})
-        return words.get(label) or index_text(label).replace("-", "–")
+        return self._word(axis, label) or index_text(label).replace("-", "–")
+
+    def row(self, axis: Axis, label: tuple[int, ...]) -> str:
+        """The same where nothing else says what it is: ``test 2``."""
+        return self._word(axis, label) or f"{axis.row} {index_text(label)}"
+
+    def _word(self, axis: Axis, label: tuple[int, ...]) -> str:
+        return self.report.values.words.get(axis.name, {}).get(label, "")
 
     def count(self, series: Series, number: int) -> str:
         """So many rows: ``10 pairs``."""

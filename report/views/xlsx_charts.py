@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ..cells.address import index_text
 from ..cells.grid import CellBlock, Grid, Place
 from ..cells.layout import evenly
 from ..charts import BARS, IN_A_ROW, MOST_PANELS, Chart, Series, copied, shade
@@ -135,7 +134,7 @@ def _panels(
         drawn = book.add_chart({"type": "scatter"})
         for own in lines:
             drawn.add_series(own[row])
-        name = f"{of.row} {index_text(names[row])}"
+        name = words.row(of, tuple(names[row]))
         _framed(drawn, words, chart, name, 11)
         drawn.set_legend({"none": True})
         drawn.set_size({"width": width, "height": height})
@@ -196,7 +195,7 @@ def _series(words: Words, grid: Grid, series: Series, digits: int = _PICTURED) -
     for number, label in enumerate(parents):
         own, colour = f"the {of.name}", series.colour
         if series.each:
-            own, colour = f"{of.row} {index_text(label)}", shade(number / max(1, len(parents) - 1))
+            own, colour = words.row(of, tuple(label)), shade(number / max(1, len(parents) - 1))
         yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each, digits)
 
 
