@@ -195,3 +195,29 @@ def test_what_readings_come_to_may_scatter_less_than_their_digits_leave(
     main(["build", str(tmp_path)])
     said = capsys.readouterr().out
     assert ("mg): A and B scatter there by less than half of what their digits leave" in said) == odd
+
+
+READINGS = "reading,V [V],I [mA],phi [1]\n1,5.007,19.663,1.0456\n2,4.994,19.639,1.0438\n"
+READINGS += "3,5.005,19.640,1.0468\n4,4.990,19.685,1.0428\n5,4.999,19.678,1.0433\n"
+COARSE = "reading,V [V],I [mA],phi [1]\n1,5.0,19.6,1.05\n2,5.1,19.6,1.04\n3,5.0,19.6,1.05\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        (READINGS + "6,4.994,19.639,1.0438\n", "readings 2 and 6 have the same numbers in all columns"),
+        (READINGS + "6,4.994,19.639,1.0439\n", ""),
+        (READINGS, ""),
+        (COARSE, ""),  # of two numbers a column, three rows have the same ones soon
+    ],
+)
+def test_a_row_that_stands_there_twice_is_told(made: Made, rows: str, told: str) -> None:
+    folder = made('V = "u = 0.01"\nI = "u = 0.01"\nphi = "u = 0.001"', measurements=rows)
+    (found,) = (each for each in Study(folder).computed.oddities if each.kind == "twice")
+    assert (told in found.message, found.word) == (True, "warning" if told else "")
+    assert found.at.line == (7 if told else None)
+    if told:
+        place = folder / "report.toml"
+        place.write_text(place.read_text(encoding="utf-8") + '[expected]\n"reading 6" = "so it was"\n', "utf-8")
+        (again,) = (each for each in Study(folder).computed.oddities if each.kind == "twice")
+        assert again.message.endswith("as is expected")

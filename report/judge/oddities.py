@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["names", "oddities"]
 
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
-CONSTANTS, WORDS = "constants", "words"
+CONSTANTS, WORDS, TWICE = "constants", "words", "twice"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT, PUBLISHED = "cells", "rows", "result", "published"
@@ -77,6 +77,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
         WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
+        TWICE: [table.name or table.row for table in inputs.tables],
         readings.SCATTERS: readings.names(sheet, inputs),
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
@@ -167,6 +168,7 @@ class _Oddities:
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
         yield from (self.of_words(table, each) for table in self.inputs.tables for each in table.table.groups)
         yield from map(self.of_taken, _taken(self.inputs))
+        yield from map(self.of_twice, self.inputs.tables)
         yield from readings.checks(self.report)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -504,6 +506,17 @@ class _Oddities:
         every = table.name or next((axis.name for axis in self.sheet.axes if not axis.parents), "")
         return f"{table.row if len(rows) == 1 else every} {_some(list(map(str, rows)))}"
 
+    def of_twice(self, table: Measurements) -> Check:
+        """Whether a row stands in a table under two numbers."""
+        pairs, name = readings.twice(table), table.name or table.row
+        if not pairs:
+            return Check(TWICE, name, True, f"no {table.row} stands there twice", self.inputs.place)
+        column = next(iter(table.measured))
+        odd = _Odd(self, [self.values.cell(column, (test,)) for _, test in pairs], "stands there twice")
+        told = _some([self.numbered(table, pair) for pair in pairs])
+        said = f"{told} have the same numbers in all columns: is one of them another, or entered twice?"
+        return self.check(TWICE, name, said, odd)
+
     def of_constants(self, cell: str, constants: Sequence[str]) -> Check:
         """That a result rests on constants whose errors are not independent."""
         said = (
@@ -545,7 +558,7 @@ class _Oddities:
             axis, test = self.suspect
             table = self.inputs.on(axis)
             said += f"; look at {table.row} {table.called(test)} first: {self.because}"
-        warns = kind in (LIMIT, UNCERTAINTY, SQUARES)
+        warns = kind in (LIMIT, UNCERTAINTY, SQUARES, TWICE)
         at = self.at(where) if where else self.place(odd.open)
         return Check(kind, name, warns, said, at, note="warning" * warns)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,9 +18,10 @@ from ..sheet import Sheet
 
 if TYPE_CHECKING:
     from ..inputs.inputs import Inputs
+    from ..inputs.measurements import Measurements
     from ..result.result import Report
 
-__all__ = ["SCATTERS", "checks", "names"]
+__all__ = ["SCATTERS", "checks", "names", "twice"]
 
 SCATTERS = "scatter"
 """The kind of these checks."""
@@ -27,6 +29,8 @@ PAIRED = "paired"
 """The check of paired readings."""
 REACH = 2
 """Scatter about one mean that is so many times that about the means of groups is none of single readings."""
+BY_CHANCE = 0.01
+"""Of so few tables two rows would have the same numbers by chance."""
 
 
 def names(sheet: Sheet, inputs: Inputs) -> list[str]:
@@ -43,6 +47,30 @@ def checks(report: Report) -> Iterator[Check]:
         yield _of_scatter(report, name, axis)
     if report.inputs.uncertainty.paired:
         yield _of_paired(report)
+
+
+def twice(table: Measurements) -> list[tuple[int, int]]:
+    """The rows that have the numbers of an earlier one in all columns, if chance hardly does that: both.
+
+    A column has as many numbers to choose from as its digits leave between its ends; one that was set to a
+    few of them has those.
+    """
+    rows = list(zip(*table.measured.values(), strict=True))
+    known = [(test, row) for test, row in zip(table.tests, rows, strict=True) if None not in row]
+    first: dict[tuple[Fraction, ...], int] = {}
+    found = []
+    for test, row in known:
+        own = tuple(number.value for number in row if number is not None)
+        if (other := first.setdefault(own, test)) != test:
+            found.append((other, test))
+    ways = 1.0
+    for column in zip(*(row for _, row in known), strict=True) if found else ():
+        numbers = [number for number in column if number is not None]
+        values = {number.value for number in numbers}
+        finest = min(number.spread[1] for number in numbers)
+        few = 2 * len(values) <= len(numbers) or not finest
+        ways *= len(values) if few else 1 + float(max(values) - min(values)) / (2 * finest)
+    return found if math.comb(len(known), 2) < BY_CHANCE * ways else []
 
 
 def _unmoved(inputs: Inputs) -> list[str]:
