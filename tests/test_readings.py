@@ -217,7 +217,7 @@ def test_a_row_that_stands_there_twice_is_told(made: Made, rows: str, told: str)
     assert (told in found.message, found.word) == (True, "warning" if told else "")
     assert found.at.line == (7 if told else None)
     if told:
-        place = folder / "report.toml"
-        place.write_text(place.read_text(encoding="utf-8") + '[expected]\n"reading 6" = "so it was"\n', "utf-8")
+        with (folder / "report.toml").open("a", encoding="utf-8") as report:
+            report.write('[expected]\n"reading 6" = "so it was"\n')
         (again,) = (each for each in Study(folder).computed.oddities if each.kind == "twice")
         assert again.message.endswith("as is expected")
