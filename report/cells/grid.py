@@ -21,9 +21,11 @@ __all__ = [
     "CHECKED",
     "FIRST_ROW",
     "LONGEST",
+    "MOST_RESULTS",
     "SCALARS",
     "SLOPES",
     "STEPS",
+    "TOP",
     "CellBlock",
     "FilledDown",
     "Grid",
@@ -44,6 +46,10 @@ SCALARS = "report"
 """The worksheet of the scalars."""
 CHECKED = 6
 """Its column, from 0, of what is given where it is allowed."""
+TOP = 5
+"""The row of its first cell."""
+MOST_RESULTS = 50
+"""Rows of a result that are shown there, too; of more, nobody reads them twice."""
 STEPS = "steps"
 """The worksheet of the steps to a scalar root."""
 SLOPES = "derivatives"

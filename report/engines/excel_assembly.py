@@ -17,9 +17,11 @@ from ..cells.grid import (
     CHECKED,
     FIRST_ROW,
     LONGEST,
+    MOST_RESULTS,
     SCALARS,
     SLOPES,
     STEPS,
+    TOP,
     CellBlock,
     FilledDown,
     Grouped,
@@ -46,8 +48,6 @@ from .numpy_texts import program_texts
 
 __all__ = ["Assembly", "auxiliary_texts"]
 
-_TOP = 5
-"""The row, from 0, of the first scalar."""
 _ABOVE = 6
 """How far above the first row of a drawn axis the number stands that says how often it repeats."""
 _GAP = 3
@@ -179,7 +179,7 @@ class Assembly:
             self.places[name] = self.rooms[axis.name].next(
                 self.places[leaf.name].scale, self.places[leaf.name].zero
             )
-        row = _TOP - 2
+        row = TOP - 2
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
             if over is not None:
@@ -228,14 +228,22 @@ class Assembly:
             [c for c in scalars if not isinstance(c.rule, Given) and c.name not in self.first],
             [c for c in self.judged.columns if c.axis is None and c.name not in self.sheet],
         )
-        row = _TOP
-        for group in groups:
+        row = TOP
+        for at, group in enumerate(groups):
             for column in group:
                 self.places[column.name] = place = Place(SCALARS, row, 1, 1, *self.size(column))
                 if isinstance(column.rule, Given):
                     self.places[checked(column.name)] = replace(place, column=CHECKED)
                 row += 1
             row += _GAP if group else 0
+            if not at:  # results that have rows stand there, too, below those that are one number
+                row += sum(rows + _GAP - 1 for rows in self.rows_of_results())
+
+    def rows_of_results(self) -> Iterator[int]:
+        """The numbers of rows of results that are shown with the scalars."""
+        axes = (self.whole[name].axis for name in self.first if name in self.whole)
+        sizes = (self.layouts[axis.name].size for axis in axes if axis is not None)
+        yield from (size for size in sizes if size <= MOST_RESULTS)
 
     def put_steps(self, unrolled: Unrolled, row: int) -> int:
         """What comes before the steps one below the other, then a table with a row for each step."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...derivations.proved import IDENTITY
 from ..cells.address import index_text
-from ..cells.grid import CHECKED, SCALARS, CellBlock, Grid, checked, letters
+from ..cells.grid import CHECKED, MOST_RESULTS, SCALARS, TOP, CellBlock, Grid, checked, letters
 from ..document.material import Material
 from ..result.result import Comparison, Report
 from ..result.statements import statements
@@ -20,9 +20,7 @@ from .xlsx_tables import mark_errors, write_block
 
 __all__ = ["write_equations", "write_published", "write_report"]
 
-_WITH_U = "with its uncertainty"
-MOST_ROWS = 50
-"""Of a result that stands on a worksheet of rows; of more, nobody reads them twice."""
+_RESULT, _WITH_U = "Result", "with its uncertainty"
 
 # --- the result and the scalars -----------------------------------------------------------------------------
 
@@ -39,8 +37,11 @@ def write_report(
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
     style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 22, 40))
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
-    row = 2  # of what is told there, if there are no scalars
-    for group in _groups(scalars):
+    groups = list(_groups(scalars))
+    row = TOP - 4  # of what is told there, if there are no scalars
+    if not groups or _title(report, groups[0]) != _RESULT:
+        row = _write_results_in_rows(sheet, style, report, grid, row, stated)
+    for group in groups:
         row, given = group[0].place.row, group[0].kind == "given"
         said = [block.name for block in group if block.name in stated]
         style.section(sheet, row - 2, _title(report, group), 8 if said else 7)
@@ -51,7 +52,8 @@ def write_report(
             row = block.place.row
             _write_scalar(sheet, style, report, grid, block, inputs)
             _write_statement(sheet, style, stated, block.name, row, CHECKED + 1)
-    row = _write_results_in_rows(sheet, style, report, grid, row, stated)
+        if _title(report, group) == _RESULT:
+            row = _write_results_in_rows(sheet, style, report, grid, row, stated)
     _write_notes(sheet, style, report, grid, row + 2)
     for column in (1, CHECKED, CHECKED + 1):
         mark_errors(sheet, style, 0, column, row, column)
@@ -72,7 +74,7 @@ def _groups(blocks: Sequence[CellBlock]) -> Iterator[list[CellBlock]]:
 
 def _title(report: Report, group: Sequence[CellBlock]) -> str:
     if group[0].name in report.workbook.headline:
-        return "Result"
+        return _RESULT
     return {"given": "Given", "margin": TITLE}.get(group[0].kind, "On the way")
 
 
@@ -110,7 +112,7 @@ def _write_results_in_rows(
     """Show results that other worksheets compute, one for each group, say; return the last row."""
     named = [report.sheet[name] for name in report.workbook.headline if name in report.sheet]
     for column in named:
-        if column.axis is None or grid[column.name].place.rows > MOST_ROWS:
+        if column.axis is None or grid[column.name].place.rows > MOST_RESULTS:
             continue
         block, row = grid[column.name], row + 2
         style.section(sheet, row, f"Result: {block.meaning}", 7)
