@@ -9,6 +9,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import openpyxl
 import pytest
 from two_reports import forged
 
@@ -316,3 +317,34 @@ def test_build_warns_of_older_numbers_that_it_takes(apart: Path, capsys: pytest.
 def test_a_report_that_is_not_built_yet_is_told_how(apart: Path) -> None:
     folder(apart, TAKING + DENSITY, taken(V="V") | WATER | {"m": '{ from = "none/values.json", cell = "m" }'})
     assert "'loopsheet build' of its folder writes it" in refused(apart)[1]
+
+
+def test_a_number_that_falls_with_an_influence_of_another_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The sign of its sensitivity is live in the workbook, and the judge would see another one."""
+    head = "from loopsheet import Method, given, let\n\n\n"
+    first = head + (
+        'class One(Method, source="own", headline="b"):\n    "A density."\n'
+        '    m = given("g", "mass", positive=True)\n    V = given("mL", "volume", positive=True)\n'
+        '    b = let(m / V, "density", "g/mL")\n'
+    )
+    second = head + (
+        'class Two(Method, source="own", headline="r"):\n    "A density by a factor."\n'
+        '    b = given("g/mL", "density", positive=True)\n    c = given("1", "factor")\n'
+        '    r = let(c * b, "both", "g/mL")\n'
+    )
+    one, two = tmp_path / "two" / "one", tmp_path / "two"
+    given = 'm = "2.000 g, u = 0.002 g"\nV = "1.000 mL, u = 0.004 mL"'
+    taken = 'b = { from = "one/out/values.json", cell = "b" }\nc = "1.000, u = 0.001"'
+    for at, code, parameters in ((one, first, given), (two, second, taken)):
+        at.mkdir(parents=True, exist_ok=True)
+        (at / "workbook.py").write_text(code, encoding="utf-8")
+        toml = f'workbook = "workbook.py"\n[parameters]\n{parameters}\n'
+        (at / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["build", str(one)]) == main(["build", str(two)]) == 0
+    assert main(["check", str(two)]) == 0
+    assert "xlsx" in capsys.readouterr().out
+    book = openpyxl.load_workbook(two / "out" / "report.xlsx", data_only=True)["uncertainty"]
+    told = {str(row[0]): row[6:8] for row in book.iter_rows(values_only=True) if row[6] is not None}
+    assert told["V (one/out/values.json)"] == (pytest.approx(-1), pytest.approx(-0.008))

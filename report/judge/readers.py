@@ -44,8 +44,8 @@ BOOK_SECONDS = 300
 STORED_DIGITS = 15
 """Significant digits of a number in a file that LibreOffice writes, whichever format it is."""
 
-BUDGETED, SHARES = ("standard uncertainty u", "expanded uncertainty U"), "I"
-"""The lines of a budget, and the column of it, that are compared with what was issued."""
+BUDGETED, PARTS, SHARES = ("standard uncertainty u", "expanded uncertainty U"), "H", "I"
+"""The lines of a budget, and its columns of contributions and shares: compared with what was issued."""
 SURELY = 1e-3
 """How near they have to be: u has two digits, and how much of them rounding takes nobody knows."""
 
@@ -284,9 +284,11 @@ def without_results(content: bytes) -> bytes:
 
 
 def _unlike(issued: Mapping[str, float | str], found: Mapping[str, float | str]) -> Iterator[str]:
-    """What of budgets was computed otherwise than it was issued: u, U, and shares of the variance."""
+    """What of budgets was computed otherwise than it was issued: u, U, contributions and shares."""
     for at, was in issued.items():
+        share = issued.get(f"{SHARES}{at[1:]}")
         named = at[0] == "B" and issued.get(f"A{at[1:]}") in BUDGETED
+        named |= at[0] == PARTS and isinstance(share, float) and abs(share) > SURELY
         if isinstance(was, float) and (named or at[0] == SHARES):
             now = found.get(at, "nothing")
             least = 0.0 if named else SURELY

@@ -204,10 +204,10 @@ class _Written:
         ways = by.get(name, ())
         every = range(grid[ways[0].first].place.rows) if ways else ()
         if len(every) > 1 and self.axis is None and source.moves == tuple((name, row, size) for row in every):
-            told = f"SUM({grid[ways[0].first].place.range()})"
+            told = f"{'-' * (size < 0)}SUM({grid[ways[0].first].place.range()})"
         else:
             terms = [
-                f"{'+' if u * size > 0 else '-'}{text}{'' if source.u else self.times(source, own, row, u)}"
+                f"{'+' if u > 0 else '-'}{text}{'' if source.u else self.times(source, own, row, u)}"
                 for own, row, u in source.moves
                 for text in self.products(own, row)
             ]
