@@ -29,7 +29,7 @@ import loopsheet
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.views import figures
+from loopsheet.report.views import drawing, figures
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 CAMPAIGNS = ("paper", "2", "3", "10", "40", "in error", "no pair", "falling", "equal", "cards")
@@ -186,7 +186,7 @@ import hashlib
 import json
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
-from loopsheet.report.views import figures
+from loopsheet.report.views import drawing, figures
 import sys
 report = Study(PAPER).computed
 for name in figures.drawings(report.workbook):
@@ -381,3 +381,16 @@ def test_rows_with_names_are_named_by_them(tmp_path: Path) -> None:
     report = Study(tmp_path).computed
     (figure,) = (figures.draw(report, each.drawing) for each in figures.of(report) if not each.fixed)
     assert {"S-17", "S-4"} <= {text.get_text() for text in figure.findobj(Text)}
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_a_dot_is_round_whatever_its_axis(scale: str) -> None:
+    """Its stroke is shorter than a thousandth of a pixel, over eight decades, too."""
+    _, axes = drawing.page(3.0)
+    axes.set_xscale(scale)
+    drawing.dots(axes, np.array([1e-8, 1e-6, 1e-4, 1e-2, 1.0]), np.arange(1.0, 6.0), 3.0, "#000000")
+    axes.set(xlim=(1e-9, 10), ylim=(0, 6))
+    (dots,) = axes.patches
+    ends = axes.transData.transform(dots.get_path().vertices).reshape(-1, 2, 2)
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    assert np.all((lengths > 0) & (lengths < 1e-3))

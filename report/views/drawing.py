@@ -6,6 +6,7 @@ user's matplotlibrc says is set back to matplotlib's own defaults. Fonts are the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -105,12 +106,15 @@ def empty(axes: Axes, sentence: str) -> None:
 def dots(axes: Axes, x: Array, y: Array, size: float, colour: str) -> None:
     """Round dots as one path: as markers they would take four times the bytes.
 
-    A dot is a stroke of next to no length with round ends.
+    A dot is a stroke of next to no length with round ends, along a logarithmic axis, too.
     """
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    step = (float(np.ptp(x)) or float(np.abs(x).max())) * 1e-6
+    if axes.get_xscale() == "log":
+        step = x * math.expm1(1e-6 * (math.log(x.max() / x.min()) or 1.0))
+    else:
+        step = np.full_like(x, (float(np.ptp(x)) or float(np.abs(x).max())) * 1e-6)
     corners = np.stack([np.column_stack([x, y]), np.column_stack([x + step, y])], axis=1).reshape(-1, 2)
     path = Path(corners, np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=np.uint8), len(x)))
     path.should_simplify = False
