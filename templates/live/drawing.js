@@ -17,10 +17,11 @@ function ticks(low, high, most) {
 // A width that is near enough to keep texts apart.
 const textWidth = (text, size) => size * [...text].reduce((sum, c) => sum + (/[ijl.,:;|' ]/.test(c) ? 0.32 : /[mwMW]/.test(c) ? 0.93 : 0.61), 0);
 
-// Powers of ten, if there are two between the ends.
+// Powers of ten, if there are two between the ends; of many every other one, or fewer.
 function logTicks(low, high, most) {
+  const first = Math.ceil(Math.log10(low)), last = Math.floor(Math.log10(high)), step = Math.max(1, Math.ceil((last - first) / most));
   const found = [];
-  for (let power = Math.ceil(Math.log10(low)); 10 ** power <= high; power++) found.push({ at: 10 ** power, text: brief(10 ** power) });
+  for (let power = first; power <= last; power += step) found.push({ at: 10 ** power, text: brief(10 ** power) });
   return found.length > 1 ? found : ticks(low, high, most);
 }
 

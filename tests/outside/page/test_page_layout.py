@@ -1,10 +1,15 @@
 """What is on the screen: the result while one edits, the bar, wide equations, chapters that are as issued."""
 
 from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import pytest
 from driving import FRAME, Live
+
+from loopsheet.report import build
+from loopsheet.report.study import Study
 
 Open = Callable[..., Live]
 
@@ -227,3 +232,29 @@ def test_a_picture_that_is_scrolled_to_after_an_edit_is_the_new_one_or_none(
     assert wanted != before
     assert set(frames) - {""} == {wanted}
     assert (frames[0] == wanted) is printed
+
+
+def test_marks_of_a_logarithmic_axis_stand_apart(open_page: Open, tmp_path: Path) -> None:
+    """Of nine powers of ten in the small picture beside a table, no label stands on another."""
+    code = "from loopsheet import Method, let, mean, measured, plot\n\n\n"
+    code += 'class Decades(Method, source="own", rows="readings"):\n    "Points over decades."\n'
+    code += (
+        '    c = measured("mol/L", "concentration", positive=True)\n    c_m = let(mean(c), "mean", like=c)\n'
+    )
+    code += '    plot(c, c, log="xy")\n'
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    rows = "".join(f"{n},1.00e-{9 - n}\n" for n in range(1, 10))
+    (tmp_path / "measurements.csv").write_text(f"reading,c [mol/L]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    build.build(Study(tmp_path), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html", viewport={"width": 1200, "height": 900})
+    live.type("c", 2, "1.01e-7")
+    live.drawn()
+    boxes = live.page.locator("#live-panel svg g text").evaluate_all(
+        "all => all.map((one) => one.getBoundingClientRect()).map((box) => [box.left, box.right, box.top,"
+        " box.bottom])"
+    )
+    assert len(boxes) > 6
+    for (left, right, top, bottom), other in combinations(boxes, 2):
+        assert left >= other[1] or right <= other[0] or top >= other[3] or bottom <= other[2]
