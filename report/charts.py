@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from .sheet import Axis, Column, Formula, Sheet, SheetError
+from .column import shown_as
+from .sheet import Axis, Column, Formula, Given, Sheet, SheetError
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -86,6 +87,11 @@ class Chart:
     height: float = 8
     """In centimetres, of 16 cm of width; with panels, of a row of these."""
 
+    @property
+    def leading(self) -> Series:
+        """The series in whose units the axes are."""
+        return next((series for series in self.series if series.style != "level"), self.series[0])
+
 
 @dataclass(frozen=True)
 class Drawn:
@@ -109,25 +115,43 @@ def drawn(name: str, axis: Axis, value: Expr, unit: str = "1", meaning: str = ""
     return Column(name, axis, Formula(equation), unit, meaning, positive=False, **more)
 
 
-def copied(column: Column, axis: Axis) -> str:
-    """The name of the copy of a sheet's column, or of a single number for each row, that Excel draws from."""
-    return f"plotted_{column.name}" if column.axis else f"{axis.name}_{column.name}"
+def copied(name: str, axis: Axis, like: str, columns: Mapping[str, Column]) -> str:
+    """The name of the copy of a column, or of a single number for each row, that Excel draws from.
+
+    `like`: the column in whose unit it is drawn. `columns`: those of the sheet and those that are drawn.
+    """
+    own = f"plotted_{name}" if columns[name].axis else f"{axis.name}_{name}"
+    return own if _in_one_unit(name, like, columns) else f"{own}_like_{like}"
+
+
+def _in_one_unit(name: str, like: str, columns: Mapping[str, Column]) -> bool:
+    """Whether two columns are shown in one unit, whatever that is; what is given may stand in any."""
+    one, other = (shown_as(columns[each], columns) for each in (name, like))
+    computed = not any(isinstance(each.rule, Given) for each in (one, other))
+    return one == other or (computed and (one.unit, one.display) == (other.unit, other.display))
 
 
 def with_copies(own: Drawn, sheet: Sheet, charts: Iterable[Chart]) -> Drawn:
-    """The same with copies of what charts show of the sheet, for what would draw a cell in error as zero."""
+    """The same with copies of what charts show, in the units of the axes.
+
+    Of the sheet they are of all, for what would draw a cell in error as zero.
+    """
     columns = {column.name: column for column in (*sheet.columns, *own.columns)}
     found: dict[str, Column] = {}
     whole: set[Axis] = set()
-    for series in (series for chart in charts for series in chart.series):
+    for lead, series in ((chart.leading, series) for chart in charts for series in chart.series):
         axis = columns[series.x].axis
         assert axis is not None
         if not (series.is_cloud and {series.x, series.y} <= sheet.by_name.keys()):
             whole.add(axis)
-        for column in (sheet[name] for name in (series.x, series.y) if name in sheet):
+        for own_name, like in ((series.x, lead.x), (series.y, lead.y)):
+            column, is_alike = columns[own_name], _in_one_unit(own_name, like, columns)
+            if is_alike and own_name not in sheet:
+                continue  # what is drawn alone has no errors
             value = column[axis.index] if column.axis else column.symbol
-            name, meaning = copied(column, axis), f"{column.name}, for the chart"
-            found[name] = drawn(name, axis, value, column.unit, meaning, display=f"like {column.name}")
+            name, meaning = copied(own_name, axis, like, columns), f"{own_name}, for the chart"
+            display = f"like {own_name if is_alike else like}"
+            found[name] = drawn(name, axis, value, column.unit, meaning, display=display)
     thinned = tuple(name for name, column in found.items() if column.axis not in whole)
     return Drawn((*own.columns, *found.values()), own.given, thinned)
 

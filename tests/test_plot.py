@@ -1,13 +1,17 @@
 """The figures that a method asks for: points, lines and levels."""
 
 import re
+import zipfile
+from pathlib import Path
 
 import pytest
 
 import loopsheet.report.method.words
 from loopsheet import Method, drawing, let, mean, measured, plot, trace
+from loopsheet.report import build
 from loopsheet.report.charts import BLUE, Series
 from loopsheet.report.column import SheetError
+from loopsheet.report.study import Study
 
 
 def test_a_second_measured_column_is_points_with_bars() -> None:
@@ -117,3 +121,48 @@ def test_what_cannot_be_plotted(line: str, said: str) -> None:
     body = f"    x = measured('m', 'length')\n    m = let(mean(x), 'mean')\n    {line}\n"
     with pytest.raises(SheetError, match=re.escape(said)):
         exec(f"class Wrong(Method):\n{body}", {**vars(loopsheet.report.method.words)})
+
+
+LENGTHS = """\
+from loopsheet import Method, let, mean, measured, plot, points
+
+
+class Lengths(Method, source="own", rows="readings", headline="r"):
+    "A curve in SI beside readings in mm, mV and degC."
+    x = measured("mm", "length", positive=True)
+    V = measured("mV", "voltage", positive=True)
+    T = measured("degC", "temperature")
+    r = let(mean(V) / mean(x), "mean ratio", "V/m")
+    h = points(0, 0.06, "length", "m")
+    law = let(r * h, "law", "V")
+    again = let(V * 1, "voltage again", "V")
+    t = points(283.15, 323.15, "temperature", "K")
+    warm = let(r * t / mean(T), "ratio", "V/m")
+    ratio = let(V / x, "ratio of a reading", "V/m")
+    plot(x, V, (h, law))
+    plot(x, V, again)
+    plot(T, ratio, (t, warm))
+"""
+
+
+def test_what_a_workbook_draws_is_in_the_units_of_its_axes(tmp_path: Path) -> None:
+    (tmp_path / "workbook.py").write_text(LENGTHS, encoding="utf-8")
+    rows = "reading,x [mm],V [mV],T [degC]\n1,12.0,13.00,12.0\n2,25.0,26.05,25.0\n3,45.0,44.11,45.0\n"
+    (tmp_path / "measurements.csv").write_text(rows, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    build.build(Study(tmp_path), tmp_path / "out", ("xlsx",))
+    with zipfile.ZipFile(tmp_path / "out" / "report.xlsx") as book:
+        charts = [book.read(f"xl/charts/chart{n}.xml").decode() for n in (1, 2, 3)]
+
+    def ends(chart: str, axis: str) -> list[tuple[float, float]]:
+        """Of the points and of the line, the least and the greatest number as the chart has it."""
+        drawn = re.findall(rf"<c:{axis}Val>.*?</c:{axis}Val>", chart, re.DOTALL)
+        numbers = ([float(text) for text in re.findall(r"<c:v>([^<]*)</c:v>", each)] for each in drawn)
+        return [(min(each), max(each)) for each in numbers][:2]
+
+    law, again, warm = charts
+    assert ends(law, "x") == [(12, 45), (0, 60)]
+    assert ends(law, "y") == [(13, 44.11), (0, pytest.approx(60 * 83.16 / 82, rel=1e-5))]
+    assert ends(again, "y") == [(13, 44.11)] * 2
+    assert ends(warm, "x") == [(12, 45), (pytest.approx(10), pytest.approx(50))]

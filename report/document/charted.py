@@ -94,7 +94,7 @@ class Words:
 
     def scales(self, chart: Chart) -> tuple[Scale, Scale]:
         """Both axes, in the units of the first series."""
-        first = next((series for series in chart.series if series.style != "level"), chart.series[0])
+        first = chart.leading
         return self._scale(chart.x, first.x), self._scale(chart.y, first.y)
 
     def _scale(self, title: str, name: str) -> Scale:

@@ -83,13 +83,14 @@ def _whole(
     labels: list[str] = []
     ends: list[dict[str, Any]] = []
     for place, series in enumerate(chart.series):
-        bars = list(_barred(words, grid, series))
-        for each in _series(words, grid, series):
+        x, y = _drawn(words, grid, chart, series)
+        bars = list(_barred(words, grid, series, x, y))
+        for each in _series(words, series, x, y):
             each["name"] += f"; {BARS} as issued" if bars else ""
-            for axis, name, u in bars:
-                head = f"u({name}) as issued{said(grid[name].unit)}"
+            for axis, block, u in bars:
+                head = f"u({getattr(series, axis)}) as issued{said(block.unit)}"
                 each[f"{axis}_error_bars"] = _bars(sheet, style, beside, head, u, series.colour)
-                own = _ends(sheet, style, beside, axis, grid[name], u, axis in chart.log)
+                own = _ends(sheet, style, beside, axis, block, u, axis in chart.log)
                 ends += [{**each, **end} for end in own]
                 beside += 3
             labels.append(each["name"])
@@ -117,7 +118,11 @@ def _panels(
 
     What the lines are stands above, in their colours: so all panels are alike.
     """
-    lines = [list(_series(words, grid, series, _IN_PANEL)) for series in chart.series]
+    places = [_drawn(words, grid, chart, series) for series in chart.series]
+    lines = [
+        list(_series(words, series, *both, _IN_PANEL))
+        for series, both in zip(chart.series, places, strict=True)
+    ]
     colours = {own[0]["name"]: series.colour for own, series in zip(lines, chart.series, strict=True) if own}
     title = f"Figure {figure.number}: {plain(words.letters(chart.title))}"
     sheet.write_string(top, 0, title, book.add_format({"bold": True, "font_color": _INK}))
@@ -175,16 +180,24 @@ def _told(sheet: Any, style: Style, row: int, label: str, block: CellBlock, word
     return f"={sheet.get_name()}!$A${row + 1}"
 
 
-def _series(words: Words, grid: Grid, series: Series, digits: int = _PICTURED) -> Iterator[dict[str, Any]]:
+def _drawn(words: Words, grid: Grid, chart: Chart, series: Series) -> tuple[CellBlock, CellBlock]:
+    """The cells that a series is drawn from, in the units of the axes: copies, where there are some."""
+    columns, lead = words.plotted.values.sheet.by_name, chart.leading
+    axis = columns[series.x].axis
+    assert axis is not None
+    pairs = (series.x, lead.x), (series.y, lead.y)
+    names = ((copied(name, axis, like, columns), name) for name, like in pairs)
+    x, y = (grid[copy if copy in grid.by_name else name] for copy, name in names)
+    return x, y
+
+
+def _series(
+    words: Words, series: Series, x: CellBlock, y: CellBlock, digits: int = _PICTURED
+) -> Iterator[dict[str, Any]]:
     """A chart's series: one, or one for each row of the axis that is repeated."""
     values = words.plotted.values
     axis, of = values.sheet[series.x].axis, words.axis(series)
     assert axis is not None
-    names = (copied(values.sheet[name], axis) for name in (series.x, series.y))
-    x, y = (
-        grid[name if name in grid.by_name else own]
-        for name, own in zip(names, (series.x, series.y), strict=True)
-    )
     if axis is of or series.style == "points":
         label = plain(words.label(series, f"the {of.name}"))
         label += thinned(values.layouts[axis.name].size, x.place.rows)
@@ -199,14 +212,17 @@ def _series(words: Words, grid: Grid, series: Series, digits: int = _PICTURED) -
         yield _one(plain(words.label(series, own)), series, colour, x, y, number * each, each, digits)
 
 
-def _barred(words: Words, grid: Grid, series: Series) -> Iterator[tuple[str, str, list[float]]]:
-    """The axes along which points have bars, the column of each, and standard uncertainties in its unit."""
+def _barred(
+    words: Words, grid: Grid, series: Series, x: CellBlock, y: CellBlock
+) -> Iterator[tuple[str, CellBlock, list[float]]]:
+    """The axes along which points have bars, the cells of each, and standard uncertainties in their unit."""
     known = words.report.uncertain().u if series.bars else {}
-    for axis, name in (("x", series.x), ("y", series.y)):
-        scale = float(grid[name].place.scale)
+    for axis, name, copy in (("x", series.x, x), ("y", series.y, y)):
+        block = grid[name] if grid[name].unit == copy.unit else copy
+        scale = float(block.place.scale)
         u = [each / scale if each > 0 else 0.0 for each in known.get(name, np.empty(0)).tolist()]
         if any(u):
-            yield axis, name, u
+            yield axis, block, u
 
 
 def _bars(sheet: Any, style: Style, column: int, head: str, u: list[float], colour: str) -> dict[str, Any]:
