@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import importlib
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Collection, Mapping
-from contextlib import ExitStack
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -213,7 +213,7 @@ def _made(
         refereeing = None
         if not study.is_refereed():
             refereeing = running.enter_context(Background(_refereed, study.recipe, LateArgument()))
-        formats = _possible(study.prepared, formats, tell)
+        asked, formats = formats is not None, _possible(study.prepared, formats, tell)
         if long := cost.told(study.prepared.sheet, study.prepared.layouts, formats):
             tell(long)
         study.prepared.check_cells()
@@ -229,8 +229,9 @@ def _made(
         content = b""
         if "xlsx" in formats:
             study.step("writing report.xlsx")
-            with timed("workbook"):
+            with timed("workbook"), _without_workbook(asked, tell) as left_out:
                 content = book(proved)[1]
+            formats = [each for each in formats if each not in left_out]
         finished = replace(proved, engines=engines)
         study.step("drawing the figures")
         with timed("figures"):
@@ -320,13 +321,25 @@ def _write(made: Issued, stage: Path, formats: Collection[str], step: Step) -> N
 def _possible(prepared: Prepared, formats: Collection[str] | None, tell: Step) -> Collection[str]:
     """The formats that are asked for; or those that everybody gets, without a workbook that is too large."""
     wanted = DEFAULT_FORMATS if formats is None else formats
-    if "xlsx" in wanted:
-        try:
-            refuse_too_many_rows(prepared.layouts)
-        except UsageError as refused:
-            if formats is not None:
-                raise
-            (reason,) = refused.diagnostics
-            tell(f"{reason.message}; {reason.allowed}")
-            return [each for each in wanted if each != "xlsx"]
-    return wanted
+    if "xlsx" not in wanted:
+        return wanted
+    with _without_workbook(formats is not None, tell) as left_out:
+        refuse_too_many_rows(prepared.layouts)
+    return [each for each in wanted if each not in left_out]
+
+
+@contextmanager
+def _without_workbook(asked: bool, tell: Step) -> Iterator[list[str]]:
+    """Go on without a workbook that cannot be made, and tell why, if nobody asked for it.
+
+    Yields what is left out, once it is known.
+    """
+    left_out: list[str] = []
+    try:
+        yield left_out
+    except UsageError as refused:
+        if asked:
+            raise
+        (reason,) = refused.diagnostics
+        tell(f"{reason.message}; {reason.allowed}")
+        left_out.append("xlsx")

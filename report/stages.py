@@ -258,12 +258,13 @@ def _agreements(report: Report, values: Values, every: bool) -> tuple[Agreement,
     judge = engines.Judge.of(values.sheet, values.layouts, labels, exactly, report.exactly)
     if not every:
         return (judge.agreement(of_values(values)),)
+    case = Case(values.sheet, labels, made.data, values)
     try:
         grid, content = book(report)
-        written = Book(content, grid)
-    except UsageError:
-        written = None  # there is no such workbook, and nothing to judge
-    return engines.compare_all(judge, Case(values.sheet, labels, made.data, values, written))
+        case = replace(case, book=Book(content, grid))
+    except UsageError as refused:
+        case = replace(case, unmade=refused.diagnostics[0].message)
+    return engines.compare_all(judge, case)
 
 
 def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Report:
@@ -429,9 +430,8 @@ def book(report: Report, charts: bool = True) -> tuple[Grid, bytes]:
         limited = [limits.cell[0] for limits in report.inputs.limits]
         grid = excel_grid.grid(report.sheet, values, units, first, drawn, words, limited)
     except NotPrintable as error:
-        raise UsageError(
-            diagnose("LS606", reason=error, known="functions and lengths that every spreadsheet has")
-        ) from error
+        known = "a worksheet has the functions and lengths that every spreadsheet has"
+        raise UsageError(diagnose("LS606", reason=error, known=known)) from error
     return grid, xlsx.render(report, grid)
 
 

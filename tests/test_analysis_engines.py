@@ -241,6 +241,7 @@ def test_a_budget_that_comes_out_otherwise_is_a_finding(require: Callable[..., s
     assert (right.failure, right.beside) == ("", ())
     assert {said.partition(" in ")[2].partition(",")[0][:13] for said in other.beside} == {
         "uncertainty!B",
+        "uncertainty!H",
         "uncertainty!I",
     }
 

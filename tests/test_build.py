@@ -55,8 +55,8 @@ def test_the_page_gets_the_program_of_sheet_and_curves(issued: Path) -> None:
     assert len(page.encode()) <= 417_000
 
 
-def test_a_formula_that_no_cell_takes_is_told(tmp_path: Path) -> None:
-    """Excel opens no file that has one."""
+def test_a_formula_that_no_cell_takes_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Excel opens no file that has one; all else is made where nobody asked for the workbook."""
     (tmp_path / "workbook.py").write_text(
         "from sympy import Add, sin\n\nfrom loopsheet import Method, given, let\n\n\n"
         "def sines(x):\n    return Add(*(sin(n * x) for n in range(1, 701)))\n\n\nclass Long(Method):\n"
@@ -70,6 +70,13 @@ def test_a_formula_that_no_cell_takes_is_told(tmp_path: Path) -> None:
     assert finding.code == "LS606"
     assert re.search(r"y has a formula of \d{5} characters, which no cell takes", finding.message)
     build.build(Study(tmp_path), tmp_path / "out", ("html",))
+    told: list[str] = []
+    _, files = build.build(Study(tmp_path), tmp_path / "all", tell=told.append)
+    assert {"report.html", "report.tex", "values.json"} <= {p.name for p in files}
+    assert "report.xlsx" not in {p.name for p in files}
+    assert any(said.startswith("report.xlsx cannot be made: y has a formula") for said in told)
+    assert main(["check", str(tmp_path)]) == 0
+    assert re.search(r"\nengine +xlsx +report.xlsx cannot be made: y has a formula", capsys.readouterr().out)
 
 
 def test_too_many_rows_for_a_worksheet_are_refused_before_anything_is_written(tmp_path: Path) -> None:

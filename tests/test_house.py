@@ -82,7 +82,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
     "report.column": (PROVER | rooms("axis", "content", "quantity"), ALGEBRA),
     "report.named": (PROVER | rooms("axis", "column", "messages", "quantity"), ALGEBRA),
     "report.sheet": (rooms("axis", "column", "named", "partly", "quantity"), ALGEBRA),
-    "report.charts": (PROVER | rooms("sheet"), ALGEBRA),
+    "report.charts": (PROVER | rooms("column", "sheet"), ALGEBRA),
     "report.cells": (DECLARED - rooms("workbook"), ALGEBRA | {"numpy"}),
     "report.workbook": (DECLARED, ALGEBRA),
     "report.inputs": (

@@ -56,7 +56,7 @@ def test_every_check_is_a_test(campaign: Path) -> None:
     assert "steel/report.toml::proof::(11)" in ids
     assert "steel/report.toml::published::alpha[1-2]" in ids
     assert "steel/report.toml::table::Table 2" in ids
-    assert len(ids) == len(set(ids)) == 3 + 86 + 27 + 5 + 3 + 11 + 1
+    assert len(ids) == len(set(ids)) == 3 + 86 + 27 + 5 + 3 + 12 + 1
 
 
 def test_the_inputs_in_a_crate_are_tests_where_their_folder_is_not(campaign: Path) -> None:

@@ -476,8 +476,8 @@ def _listed(items: Iterable[Inlines]) -> Blocks:
 def _agreement(found: Agreement) -> Inlines:
     """What the judge found of an engine."""
     said: Inlines
-    if found.missing:
-        said = (f"{found.missing} was not found",)
+    if found.absent:
+        said = (found.absent,)
     elif not found.cells:
         said = ("failed",)
     else:

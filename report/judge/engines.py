@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import mpmath
@@ -79,8 +79,9 @@ class Judge:
     def agreement(self, reading: Reading) -> Agreement:
         """Judge what an engine found."""
         engine, program = reading.engine, reading.program
-        if reading.missing:
-            return Agreement(0, 0.0, "", (), engine=engine, missing=reading.missing)
+        if reading.missing or reading.unmade:
+            nothing = Agreement(0, 0.0, "", (), engine=engine)
+            return replace(nothing, missing=reading.missing, unmade=reading.unmade)
         if reading.failure:
             said = f"{engine} ({program}) failed: {reading.failure}"
             return Agreement(0, 0.0, "", (said,), engine=engine, program=program)

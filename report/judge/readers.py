@@ -76,6 +76,8 @@ class Case:
     """What NumPy found, without a batch dimension."""
     book: Book | None = None
     """The report's workbook; without it, there is nothing to recalculate."""
+    unmade: str = ""
+    """Why there is none."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,8 @@ class Reading:
     says."""
     missing: str = ""
     """The program that is not installed; then there are no values."""
+    unmade: str = ""
+    """Why there is nothing that it could compute; then there are no values."""
     failure: str = ""
     """What the program said when it failed; then there are no values."""
     rounded: Mapping[str, Sequence[Fraction]] = field(default_factory=dict)
@@ -238,7 +242,7 @@ def run_workbook(case: Case) -> Reading | None:
     """
     book = case.book
     if book is None:
-        return None
+        return Reading("xlsx", unmade=case.unmade) if case.unmade else None
     found = _find("soffice", "libreoffice")
     if found is None:
         return Reading("xlsx", missing="LibreOffice")

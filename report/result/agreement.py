@@ -42,12 +42,19 @@ class Agreement:
     """What ran it, ``node 20.19``; empty if it needs none."""
     missing: str = ""
     """The program that is not installed: then nothing was compared, and nothing is wrong."""
+    unmade: str = ""
+    """Why there is nothing that it could compute, without a full stop: then nothing was compared, either."""
     unbounded: int = 0
     """Cells whose condition is infinite, such as a square root of zero: only their status is judged."""
     of: int = 0
     """How many cells the report has, if these are those of a sample; else 0."""
     sample: str = ""
     """What the sample is: ``14 of 200 tests``."""
+
+    @property
+    def absent(self) -> str:
+        """Why nothing was compared; empty if something was, or if the engine failed."""
+        return f"{self.missing} not found" if self.missing else self.unmade
 
     @property
     def counted(self) -> str:
@@ -65,8 +72,8 @@ class Agreement:
     @property
     def line(self) -> str:
         """The comparison in a line of a table, in eps times condition."""
-        if self.missing:
-            return f"{self.engine:<11} {self.missing} not found"
+        if self.absent:
+            return f"{self.engine:<11} {self.absent}"
         ran = f", {self.program}" if self.program else ""
         if not self.cells:
             return f"{self.engine:<11} failed{ran}"
@@ -81,7 +88,7 @@ class Agreement:
         return {
             "engine": self.engine,
             "program": self.program or None,
-            "missing": self.missing or None,
+            "missing": self.missing or self.unmade or None,
             "cells": self.cells,
             "of": self.of or self.cells,
             "sample": self.sample or None,

@@ -85,8 +85,8 @@ def of_proof(proof: Proof, inputs: Inputs) -> Check:
 def of_engine(agreement: Agreement, inputs: Inputs) -> Check:
     """Whether an engine agrees with 50 digits."""
     at = inputs.place
-    if agreement.missing:
-        said = f"{agreement.engine} was not compared: {agreement.missing} not found"
+    if agreement.absent:
+        said = f"{agreement.engine} was not compared: {agreement.absent}"
         return Check("engine", agreement.engine, True, said, at, skipped=True)
     more = len(agreement.findings) - MOST_NAMED
     named = [*agreement.findings[:MOST_NAMED], *([f"and {more} more"] if more > 0 else [])]
