@@ -424,6 +424,11 @@ def test_an_input_shows_all_that_is_typed() -> None:
     assert open_format(1) == "0.0########"
     assert open_format(3) == "0.000######"
     assert open_format(-2) == open_format(0) == "General"
+    # What nine decimals show as 0 has a power of ten; what they show has as many as there is room for.
+    assert [open_format(17, 1.008e-14), open_format(12, -2e-12), open_format(10, 3.0e-9)] == [
+        "0.000E+00", "0E+00", "0.0E+00",
+    ]  # fmt: skip
+    assert open_format(12, 0.0) == open_format(12, 0.125) == "0.000000000"
 
 
 @pytest.mark.parametrize(

@@ -231,12 +231,13 @@ def same_sum(told: str, terms: Sequence[float]) -> str:
 
 def as_printed(report: Report, block: CellBlock, row: int) -> str:
     """A number format with as many decimals as a given number has, or more where more are typed."""
-    printed = report.inputs.printed(block.name)
+    printed, value = report.inputs.printed(block.name), block.values[row]
+    number = value if isinstance(value, float) else 0.0
     if block.name in report.inputs.taken:
-        return open_format(-report.places(block.name)[row])
+        return open_format(-report.places(block.name)[row], number)
     each = printed[row] if printed else None
     # In another unit than that of its cell it has other decimals.
-    return open_format(each.decimals if each and each.scale == block.place.scale else 0)
+    return open_format(each.decimals if each and each.scale == block.place.scale else 0, number)
 
 
 def _text(words: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -15,6 +16,8 @@ LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
 _LINE = 15
 """Points that a line of text is high."""
+_SMALL = 1e-6
+"""Below, decimals are mostly zeros."""
 MOST_DECIMALS = 9
 _NOTHING = f"{1e-15:.15f}"
 """What is less is shown as 0 where nothing is expected. (Not every reader knows exponents there.)"""
@@ -172,12 +175,17 @@ def typical_format(values: Iterable[float | str | None], digits: int) -> str:
     return number_format(rounded(known[len(known) // 2], digits) if known else None)
 
 
-def open_format(decimals: int) -> str:
+def open_format(decimals: int, value: float = 0.0) -> str:
     """A number format for an input: at least the decimals as printed, and all that somebody types.
 
-    >>> open_format(1), open_format(0)
-    ('0.0########', 'General')
+    `value`: what stands there; so small a number that its decimals would leave zeros has a power of ten.
+
+    >>> open_format(1), open_format(0), open_format(17, 1.008e-14)
+    ('0.0########', 'General', '0.000E+00')
     """
+    if decimals > MOST_DECIMALS and 0 < abs(value) < _SMALL:
+        digits = decimals + math.floor(math.log10(abs(value)))
+        return f"0.{'0' * digits}E+00" if digits > 0 else "0E+00"
     shown = max(0, min(decimals, MOST_DECIMALS))
     if not shown:
         return "General"  # Excel would leave a decimal point behind a whole number
