@@ -15,6 +15,7 @@ from two_reports import forged
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.inputs import load
+from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.messages.errors import InputError, render
 from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
@@ -275,6 +276,22 @@ def test_a_file_is_taken_as_it_was_built_or_from_elsewhere(apart: Path) -> None:
     assert (code, "changed after it was built" in told) == ("LS437", True)
     forged(file, content)
     load(apart, find_workbook)
+
+
+def test_what_was_kept_of_a_changed_file_is_not_believed(
+    apart: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Built without the manifest, it comes from elsewhere; with the manifest back, it was changed."""
+    monkeypatch.setenv(SETTING, str(tmp_path / "kept"))
+    file, manifest = apart / "ball/out/values.json", apart / "ball/out/manifest.json"
+    content, fingerprints = json.loads(file.read_text(encoding="utf-8")), manifest.read_bytes()
+    content["cells"]["m"]["value"] *= 1.001
+    file.write_text(json.dumps(content), encoding="utf-8")
+    manifest.unlink()
+    assert main(["build", str(apart)]) == 0
+    manifest.write_bytes(fingerprints)
+    assert main(["build", str(apart)]) == 2
+    assert "changed after it was built" in capsys.readouterr().err
 
 
 def test_check_warns_of_outputs_that_are_older_than_their_inputs(
