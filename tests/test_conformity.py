@@ -241,6 +241,15 @@ def test_two_rectangular_sources_make_a_trapezoid(
     assert said in told(capsys, "y", campaign)
 
 
+def test_beside_a_normal_source_nothing_is_certain(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of an error that has ends alone a probability is 100 %; one without ends reaches beyond all limits."""
+    campaign = of_two(tmp_path, "9.90, +-0.30 rect", "0.00, u = 0.05", "<= 13")
+    words = told(capsys, "y", campaign)
+    assert "conformance probability more than 99.99 %, specific consumer’s risk less than 0.01 %" in words
+
+
 @pytest.mark.parametrize("other", ["0.05, exponential", "0.00, u = 0.08, min = 0", "0.00, s = 0.10, n = 4"])
 def test_a_source_beside_a_rectangular_one_is_as_it_is_drawn(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], other: str
@@ -338,6 +347,10 @@ def test_a_rule_of_its_own_decides(tmp_path: Path, capsys: pytest.CaptureFixture
         told(capsys, "alpha_mean", folder(tmp_path, lines.format(own)))
         for own in ("", ", guard = U, level = 90 %")
     )
+    assert main(["build", folder(tmp_path, lines.format("")), "--out", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    band = "drawn in by the guard band, which is a fixed width or none, as the table says"
+    assert band in " ".join(re.sub(r"<[^>]*>", "", page).split())
     assert "limits at most 1.33, no guard band\nalpha_mean conforms:" in simple
     assert "U at 90 %), acceptance limits at most 1.276\nno decision on alpha_mean:" in guarded
 

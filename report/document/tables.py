@@ -13,7 +13,7 @@ from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..inputs.measurements import LeftOut, Measurements
 from ..inputs.published import PublishedValue
-from ..messages.errors import sentence_case
+from ..messages.errors import listing, sentence_case
 from ..quantity import span
 from ..result import verdict_words as words
 from ..result.chi_square import freedom, number, tail, tied
@@ -320,8 +320,12 @@ class Tables:
         drawn = "acceptance limits are the limits, drawn in by the guard band"
         told = drawn if guarded else "simple acceptance, without a guard band"
         levels = dict.fromkeys(f"{100 * rule.level:.12g}" for rule in rules if rule.times)
-        of_share = f", a share of U for {enumerated(levels)}\u00a0%" if levels else ""
-        caption = (Strong(("Conformity with limits.",)), f" Decision rule (JCGM 106): {told}{of_share}")
+        bands = [f"a share of U for {enumerated(levels)}\u00a0%"] if levels else []
+        bands += ["a fixed width"] * any(rule.width for rule in rules)
+        bands += ["none"] * any(not rule.draws_in for rule in rules)
+        of_each = f", which is {listing(bands, last='or')}, as the table says"
+        told += of_each if len(bands) > 1 else f", {bands[0]}" if guarded else ""
+        caption = (Strong(("Conformity with limits.",)), f" Decision rule (JCGM 106): {told}")
         return _table("conformity", caption, made, [((), every)], row, look="list", wide=True)
 
     def _tolerance(self, found: Conformity) -> Inlines:

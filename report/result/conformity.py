@@ -75,7 +75,8 @@ def _chance(found: Conformity, probability: float, other: float) -> str:
     """With as many digits as draws tell, where draws told it."""
     if math.isnan(probability):
         return ""
-    if found.budget.u and found.budget.shape in (Shape.NORMAL, Shape.STUDENT):
+    shapes = {found.budget.shape, *(each.source.shape for each in found.budget.contributions if each.u)}
+    if found.budget.u and (found.budget.draws or shapes & {Shape.NORMAL, Shape.STUDENT}):
         # Without bounds nothing is certain, but to doubles.
         probability, other = max(probability, sys.float_info.min), max(other, sys.float_info.min)
     return chance(probability, other, 1 if found.budget.draws else 2)
