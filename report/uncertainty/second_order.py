@@ -105,6 +105,7 @@ class SecondOrder:
             if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
         }
         """What rests on a function that has a corner: near it, derivatives jump."""
+        self.above_zero = {name for name in self.cornered if sheet[name].nonnegative}
         self.rough = dict.fromkeys(self.cornered, False) | dict.fromkeys(self.jumping, True)
         """Both, and whether it is the order of rows."""
         number, some = len(sources), np.random.default_rng(1).standard_normal((len(sources), 1))
@@ -207,7 +208,11 @@ class SecondOrder:
             bending = little & ~rounding & (self._bent_far(cells, used, first) > COUNTS * own)
             self.bending |= {name for (name, _), is_bent in zip(cells, bending, strict=True) if is_bent}
             unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
-            sharp = np.array([name in self.cornered for name, _ in cells], dtype=bool) & ~little
+            cornered = np.array([name in self.cornered for name, _ in cells], dtype=bool)
+            # What cannot be negative has its corner at 0, and all errors together reach it.
+            reached = np.array([name in self.above_zero for name, _ in cells], dtype=bool)
+            reached &= FAR * np.sqrt(own) > values
+            sharp = cornered & (~little | reached)
             found: Array = np.where(unknown | sharp | overdone | bending, np.nan, np.where(little, 0.0, more))
         return found
 

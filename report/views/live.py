@@ -241,7 +241,7 @@ def _column(report: Report, document: Material, column: Column) -> dict[str, Any
     ):
         entry["floor"] = 1
     if (jumps := report.uncertain().rough.get(column.name)) is not None:
-        entry["rough"] = 1 + jumps
+        entry["rough"] = 2 if jumps else -1 if column.nonnegative else 1
     if column.spare or report.told_of(column) != column.name:
         entry["spare"] = 1
     if head.sources != (column.source,):

@@ -17,8 +17,8 @@ function independent(errors, pairs) {
 }
 
 // For each cell, in the square of its unit in SI: 0 where it does not count, NaN where nobody knows, and infinite where
-// first order tells nothing, either. `rough` has for each whether it rests on a function with corners (1) or on what is
-// taken by order (2).
+// first order tells nothing, either. `rough` has for each whether it rests on a function with corners (1; -1 of what
+// cannot be negative, which has one at 0) or on what is taken by order (2).
 function secondOrder({ labels, data, errors, pairs, cells, names, rough }) {
   const alone = within(names), here = evaluateSheet(alone, labels, data), program = begunAt(alone, here);
   const reach = errors.map(({ moves }) => ({ moves: moves.filter(([name]) => program.columns.some((one) => one.name === name)) }));
@@ -67,7 +67,7 @@ function counted({ own, bent, turned, off, alone }, now, rough, torn) {
   const more = bent + turned, least = COUNTS * own, rounding = (ROUNDING * now) ** 2, nothing = own <= rounding;
   if (nothing && more <= rounding) return off > rounding ? Infinity : 0; // of third order, or more
   const little = Math.max(bent, Math.abs(more)) <= least;
-  if (rough > 1 || (rough && !little) || torn) return NaN;
+  if (rough > 1 || (rough && !little) || (rough < 0 && FAR * Math.sqrt(own) > now) || torn) return NaN;
   if (!nothing && (more < -own / 2 || (little && off / FAR ** 4 > least))) return NaN;
   if (alone > COUNTS * (own + bent) && alone > SHARP * off / FAR ** 4) return own ? NaN : Infinity; // slopes change here at once, and no further
   return little ? 0 : own + more > 0 ? more : bent;
