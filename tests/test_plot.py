@@ -145,13 +145,17 @@ class Lengths(Method, source="own", rows="readings", headline="r"):
 """
 
 
-def test_what_a_workbook_draws_is_in_the_units_of_its_axes(tmp_path: Path) -> None:
-    (tmp_path / "workbook.py").write_text(LENGTHS, encoding="utf-8")
+def lengths(folder: Path, code: str = LENGTHS) -> Study:
+    (folder / "workbook.py").write_text(code, encoding="utf-8")
     rows = "reading,x [mm],V [mV],T [degC]\n1,12.0,13.00,12.0\n2,25.0,26.05,25.0\n3,45.0,44.11,45.0\n"
-    (tmp_path / "measurements.csv").write_text(rows, encoding="utf-8")
+    (folder / "measurements.csv").write_text(rows, encoding="utf-8")
     toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    build.build(Study(tmp_path), tmp_path / "out", ("xlsx",))
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    return Study(folder)
+
+
+def test_what_a_workbook_draws_is_in_the_units_of_its_axes(tmp_path: Path) -> None:
+    build.build(lengths(tmp_path), tmp_path / "out", ("xlsx",))
     with zipfile.ZipFile(tmp_path / "out" / "report.xlsx") as book:
         charts = [book.read(f"xl/charts/chart{n}.xml").decode() for n in (1, 2, 3)]
 
@@ -166,3 +170,9 @@ def test_what_a_workbook_draws_is_in_the_units_of_its_axes(tmp_path: Path) -> No
     assert ends(law, "y") == [(13, 44.11), (0, pytest.approx(60 * 83.16 / 82, rel=1e-5))]
     assert ends(again, "y") == [(13, 44.11)] * 2
     assert ends(warm, "x") == [(12, 45), (pytest.approx(10), pytest.approx(50))]
+
+
+def test_what_a_curve_alone_rests_on_is_the_result(tmp_path: Path) -> None:
+    report = lengths(tmp_path, LENGTHS.replace(', headline="r"', "")).computed
+    assert report.workbook.headline == ("r",)
+    assert {each.name for each in report.uncertain().budgets} == {"r"}

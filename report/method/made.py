@@ -10,7 +10,7 @@ from sympy import Sum
 
 from ...derivations.equation import Ledger
 from ...derivations.vocabulary import Quantity, Vocabulary, spelt
-from ..axis import Axis
+from ..axis import Axis, CountedAxis, RepeatAxis
 from ..charts import Drawn
 from ..column import Column, Formula, SheetError
 from ..quantity import Bounds
@@ -88,7 +88,9 @@ def workbook_of(
     columns = body.whole
     sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
     Sheet((*columns, *curves.columns))  # a name that both have is told now
-    used = {each.name for c in columns for each in sheet.precedents(c) if each.name != c.name}
+    # What nothing but a curve rests on is a result all the same.
+    others = (c for c in columns if not isinstance(c.axis, CountedAxis | RepeatAxis))
+    used = {each.name for c in others for each in sheet.precedents(c) if each.name != c.name}
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     bounds = {one.name: one.bounds for one in body.inputs} | body.bounds

@@ -34,7 +34,7 @@ from ..result.uncertain import (
     Together,
     Uncertainties,
 )
-from ..sheet import Column, Given, PairAxis, RepeatAxis
+from ..sheet import Column, CountedAxis, Given, PairAxis, RepeatAxis
 from ..workbook import Curve, SquareSum, Workbook
 from .conformity import conformity
 from .coverage import assigned, coverage
@@ -498,7 +498,8 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
     """
     spread, sheet = Spread(inputs, values), values.sheet
     used = {precedent.name for column in sheet.columns for precedent in sheet.precedents(column)}
-    last = [c.name for c in sheet.columns if c.name not in used and not isinstance(c.rule, Given)]
+    computed = (c for c in sheet.columns if not isinstance(c.rule, Given))
+    last = [c.name for c in computed if c.name not in used and not isinstance(c.axis, CountedAxis)]
     cells = [(name, row) for name in headline or last for row in range(len(values.status[name]))]
     listed = [
         c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
