@@ -330,9 +330,10 @@ def neglected(search: Search) -> Iterator[Explained]:
     """A parameter that was taken as if there were none of it: a correction of 0, or a factor of 1."""
     own = search.problem
     for name, printed in own.campaign.inputs.parameters.items():
-        column = own.campaign.sheet[name]
-        touches = _resting_on(own, [name])
-        if not (own.campaign.suspects(name) and touches and search.worth(touches)):
+        if name not in own.campaign.sheet or not own.campaign.suspects(name):
+            continue
+        column, touches = own.campaign.sheet[name], _resting_on(own, [name])
+        if not touches or not search.worth(touches):
             continue
         problem = Problem.of(own.campaign, own.published, asked=(name,))
         for n in problem.rows.get(name, ()):

@@ -31,6 +31,8 @@ FACTORS = {"2": Fraction(2), "1/2": Fraction(1, 2)}
 CONSTANTS = {"ln 10": math.log(10), "2π": 2 * math.pi, "π": math.pi, "√2": math.sqrt(2)}
 """By which a formula goes wrong: ln for lg, turns for radians, an effective value for an amplitude. One
 number is met by one of so many by chance: only columns of several are multiplied, or divided, by them."""
+MOST_COUNTED = 100
+"""Of more rows n and n - 1 are nearer than the digits that are printed mostly tell, and explain by chance."""
 UNITS = (
     ("rad", "deg"), ("s", "min", "h"), ("mm", "in"), ("m/s", "km/h"), ("Pa", "atm", "mmHg"),
     ("J", "cal", "eV"), ("N", "kgf"),
@@ -258,7 +260,7 @@ def _of_counts(problem: Problem, members: Sequence[int]) -> Iterator[tuple[str, 
         for axis in sheet.summed_axes(each)
     )
     for numbers in counts:
-        if min(numbers) > 1:
+        if 1 < min(numbers) and max(numbers) <= MOST_COUNTED:
             n = "n" if len(set(numbers)) > 1 else str(numbers[0])
             less = "(n - 1)" if n == "n" else str(numbers[0] - 1)
             of = [Fraction(number, number - 1) for number in numbers]
