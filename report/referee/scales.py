@@ -260,7 +260,7 @@ def _of_counts(problem: Problem, members: Sequence[int]) -> Iterator[tuple[str, 
         for axis in sheet.summed_axes(each)
     )
     for numbers in counts:
-        if 1 < min(numbers) and max(numbers) <= MOST_COUNTED:
+        if min(numbers) > 1 and max(numbers) <= MOST_COUNTED:
             n = "n" if len(set(numbers)) > 1 else str(numbers[0])
             less = "(n - 1)" if n == "n" else str(numbers[0] - 1)
             of = [Fraction(number, number - 1) for number in numbers]
