@@ -7,6 +7,7 @@ from pathlib import Path
 
 import mpmath
 import numpy as np
+import openpyxl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -239,6 +240,19 @@ def test_two_rectangular_sources_make_a_trapezoid(
 ) -> None:
     campaign = of_two(tmp_path, "9.90, +-0.10 rect", "0.00, +-0.08 rect", limit)
     assert said in told(capsys, "y", campaign)
+
+
+def test_what_is_given_and_has_limits_keeps_its_check_on_the_first_worksheet(tmp_path: Path) -> None:
+    """A result has its statement in that column; there a given cell tells what is wrong with it."""
+    campaign = of_two(tmp_path, "9.90, u = 0.30", "0.00, u = 0.05", "<= 13")
+    toml = tmp_path / "report.toml"
+    both = toml.read_text(encoding="utf-8").replace("[limits]\n", '[limits]\nx_1 = "<= 12"\n')
+    toml.write_text(both, encoding="utf-8")
+    assert main(["build", campaign, "--to", "xlsx"]) == 0
+    book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")
+    beside = {str(row[0].value): str(row[7].value) for row in book["report"].iter_rows(max_col=8)}
+    assert beside["x_1"].startswith("=IF(OR(NOT(ISNUMBER(")
+    assert beside["y"].startswith("=uncertainty!$B$")
 
 
 def test_beside_a_normal_source_nothing_is_certain(

@@ -21,12 +21,10 @@ from .xlsx_tables import mark_errors, write_block
 __all__ = ["write_equations", "write_published", "write_report"]
 
 _RESULT, _WITH_U = "Result", "with its uncertainty"
-
-# --- the result and the scalars -----------------------------------------------------------------------------
-
-
 Stated = Mapping[str, tuple[str, str]]
 """By cell, the formula that names its statement with its uncertainty, and what that says."""
+
+# --- the result and the scalars -----------------------------------------------------------------------------
 
 
 def write_report(
@@ -38,20 +36,22 @@ def write_report(
     style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 22, 40))
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     groups = list(_groups(scalars))
-    row = TOP - 4  # of what is told there, if there are no scalars
+    row = 2  # of what is told there, if there are no scalars
     if not groups or _title(report, groups[0]) != _RESULT:
-        row = _write_results_in_rows(sheet, style, report, grid, row, stated)
+        row = max(row, _write_results_in_rows(sheet, style, report, grid, TOP - 4, stated))
     for group in groups:
         row, given = group[0].place.row, group[0].kind == "given"
-        said = [block.name for block in group if block.name in stated]
+        # Beside what is given stands its check.
+        said = not given and any(block.name in stated for block in group)
         style.section(sheet, row - 2, _title(report, group), 8 if said else 7)
-        last = ("as checked", "check") if given else ("computed from", *((_WITH_U,) if said else ()))
+        last = ("as checked", "check") if given else ("computed from", *(_WITH_U,) * said)
         for at, head in enumerate(("name", "value", "unit", "meaning", "equation", "symbol", *last)):
             style.text(sheet, row - 1, at, head, "head")
         for block in group:
             row = block.place.row
             _write_scalar(sheet, style, report, grid, block, inputs)
-            _write_statement(sheet, style, stated, block.name, row, CHECKED + 1)
+            if said:
+                _write_statement(sheet, style, stated, block.name, row, CHECKED + 1)
         if _title(report, group) == _RESULT:
             row = _write_results_in_rows(sheet, style, report, grid, row, stated)
     _write_notes(sheet, style, report, grid, row + 2)
