@@ -5,6 +5,7 @@ The Excel engine makes it, the workbook view draws it; neither knows the other.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -142,8 +143,14 @@ class Place:
         return (f"({value}{_term(-self.zero)})" if self.zero else value) + factors(self.scale)[1]
 
     def of(self, value: float) -> float:
-        """A value in SI as a number of that unit."""
-        return (value - float(self.zero)) / float(self.scale)
+        """A value in SI as a number of that unit, without digits that a zero taken off would make up.
+
+        >>> Place("report", 1, 1, zero=Fraction("273.15")).of(273.16)
+        0.01
+        """
+        if self.zero and math.isfinite(value):
+            return float((Fraction(repr(float(value))) - self.zero) / self.scale)
+        return value / float(self.scale)
 
     def cell(self, row: int = 0, seen_from: str = "") -> str:
         """The absolute address of a cell, with its worksheet unless it is seen from there."""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -77,19 +76,10 @@ def _cells(values: Values, name: str, place: Place) -> tuple[float | str | None,
     scale, held = place.scale, values.value[name]
     numbers = (held * float(scale.denominator) / float(scale.numerator) + 0.0).tolist()
     if place.zero:
-        numbers = [_of_zero(value, place) for value in held.tolist()]
+        numbers = list(map(place.of, held.tolist()))
     codes = {int(status): code for status, code in CODES.items()}
     pairs = zip(numbers, values.status[name].tolist(), strict=True)
     return tuple(number if not status else codes[status] for number, status in pairs)
-
-
-def _of_zero(value: float, place: Place) -> float:
-    """A number in a unit with a zero of its own, without the digits that subtracting it would make up.
-
-    >>> _of_zero(273.16, Place("report", 1, 1, zero=Fraction("273.15")))
-    0.01
-    """
-    return float((Fraction(repr(value)) - place.zero) / place.scale) if math.isfinite(value) else math.nan
 
 
 def _literal(value: float | str | None) -> str:
