@@ -6,7 +6,7 @@ finished data, a :class:`~loopsheet.report.result.result.Report`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -225,7 +225,7 @@ class Study:
         """
         files = self.files
         own = {name: content for name, content in files.items() if name.endswith(".py")}
-        if not all(map(follows_from_its_bytes, own.values())) or self._has_changed_results(files):
+        if not all(map(follows_from_its_bytes, own.values())) or (by == "folder" and self._is_told_otherwise):
             return make() if make is not None else None  # type: ignore[return-value]
         if by == "workbook":
             files = own
@@ -234,12 +234,14 @@ class Study:
         found: T = kept(what, [*parts, *named], make)
         return found
 
-    def _has_changed_results(self, files: Mapping[str, bytes]) -> bool:
+    @cached_property
+    def _is_told_otherwise(self) -> bool:
         """Whether a result that numbers are taken from is not as it was built, by the manifest beside it.
 
         That is refused once it is read; what was kept was made when it was right, or had no manifest.
         """
         from .files.manifest import is_as_built
 
-        results = ((self.folder / name, data) for name, data in files.items() if name.endswith(".json"))
+        files = self.files.items()
+        results = ((self.folder / name, data) for name, data in files if name.endswith(".json"))
         return not all(is_as_built(file, data) for file, data in results)
