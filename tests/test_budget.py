@@ -304,5 +304,5 @@ def test_draws_stand_alone_where_there_is_no_coverage_factor(
     with (folder / "report.toml").open("a") as file:
         file.write('\n[uncertainty.correlation]\n"l_S, dtheta" = "0.4"\n')
     said = told(capsys, "l", str(folder), "--draws", "2000")
-    assert "k comes from nothing: correlated sources have finite degrees of freedom" in said
+    assert "k is not known: correlated sources have finite degrees of freedom" in said
     assert said.endswith("the law of propagation tells no interval to compare with\n")

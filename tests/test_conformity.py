@@ -137,15 +137,15 @@ def test_far_outside_the_probability_keeps_its_digits() -> None:
     ("value", "u", "factor", "decision", "because"),
     [
         (math.nan, math.nan, math.nan, Decision.NONE, "it has no value"),
-        (5.0, math.nan, math.nan, Decision.NONE, "the guard band is not known"),
+        (5.0, math.nan, math.nan, Decision.NONE, "the guard band is not known: who knows"),
         (11.0, math.nan, math.nan, Decision.DOES_NOT, "it lies outside of the tolerance limits"),
         (10.0, 0.0, 1.96, Decision.CONFORMS, "it lies within the acceptance limits"),
-        (5.0, 1.0, math.nan, Decision.NONE, "the guard band is not known"),
+        (5.0, 1.0, math.nan, Decision.NONE, "the guard band is not known: who knows"),
     ],
 )
 def test_what_is_not_known(value: float, u: float, factor: float, decision: Decision, because: str) -> None:
     high = read_printed("10", parse_unit("1"))
-    budget = Budget("y", "y", (), value, u, level=0.95, factor=factor)
+    budget = Budget("y", "y", (), value, u, level=0.95, factor=factor, because="who knows")
     found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()))
     assert (found.decision, found.because) == (decision, because)
     assert math.isnan(found.probability) == (u != 0)
@@ -432,6 +432,22 @@ def test_the_report_tells_it_in_every_form(tmp_path: Path, capsys: pytest.Captur
     assert "does not conform: it lies outside of the tolerance limits (at most 1.2, guard" in first
     assert re.search(r"<span class=sure>U\s=\s[\d.]+ \(k\s=\s[\d.]+\)</span>", first)
     assert page.count("22.49 to 22.71") == 2  # the acceptance limits, there and in their table
+
+
+def test_the_report_tells_why_there_is_no_expanded_uncertainty(tmp_path: Path) -> None:
+    """Correlated sources, one of few degrees of freedom: JCGM 100 has no formula for such."""
+    stated = '[uncertainty.correlation]\n"v, x_p" = "0.4"\n'
+    limited = '[limits]\nalpha_mean = "<= 2"\n[limits.rule]\nguard = "U"\n'
+    toml = Path(folder(tmp_path, stated + limited)) / "report.toml"
+    toml.write_text(toml.read_text(encoding="utf-8").replace('v = "exact"', 'v = "u = 0.02 m/s"'))
+    assert main(["build", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
+    page, tex = (
+        (tmp_path / "out" / f"report.{form}").read_text(encoding="utf-8") for form in ("html", "tex")
+    )
+    why = "correlated sources have finite degrees of freedom"
+    assert f"the guard band is not known: {why} (at most 2, guard band" in page
+    assert f"U is not known: {why}" in page[: page.index("id=measured")]
+    assert f"U is not known: {why}" in tex
 
 
 def test_limits_of_a_column_are_of_each_row_that_has_none_of_its_own() -> None:

@@ -144,7 +144,7 @@ class Budget:
     factor: float = math.nan
     """Coverage factor; NaN where there are no degrees of freedom."""
     because: str = ""
-    """What the coverage factor was taken from."""
+    """What the coverage factor was taken from, or why there is none."""
     second: float = 0.0
     """The part of the variance that is of second order, in the square of the cell's SI unit; 0 where first
     order is enough."""
@@ -198,7 +198,9 @@ class Budget:
             return ""
         if not self.is_known:
             return f"U is not known: {self.unlooked}" if self.unlooked else ""
-        if not self.of_second_order or math.isnan(self.factor):
+        if math.isnan(self.factor):
+            return f"U is not known: {self.because}"
+        if not self.of_second_order:
             return ""
         return f"{self.hold}: second order {'counts' if self.second else 'was not looked at'}"
 
@@ -327,7 +329,7 @@ class Conformity:
         if math.isnan(self.budget.value):
             return "it has no value"
         if math.isnan(self.guard):
-            return "the guard band is not known"
+            return f"the guard band is not known: {self.budget.because or self.budget.unlooked}"
         low, high = self.acceptance
         return "the guard bands meet: no value is accepted" if low > high else "it lies in the guard band"
 

@@ -81,7 +81,7 @@ def coverage(shape: Shape, law: Law | None, dof: float, level: float = LEVEL) ->
     (1.6454482671904334, 'the rectangular source that dominates')
     """
     if math.isnan(dof):
-        return math.nan, "nothing: correlated sources have finite degrees of freedom"
+        return math.nan, "correlated sources have finite degrees of freedom"
     if isinstance(law, Convolved):
         one, because = law.effective, "the convolved distributions of its sources"
         if math.isfinite(one):

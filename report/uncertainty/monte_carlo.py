@@ -133,7 +133,7 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     found = [own[there] for own, there in (drawn.of(batch, row) for batch in drawn.batches(SOME, SOME))]
     errors = np.concatenate(found) - budget.value
     if errors.size < (1 - WITHOUT) * SOME:
-        return replace(budget, factor=math.nan, because="nothing: too many draws have no value")
+        return replace(budget, factor=math.nan, because="too many draws have no value")
     if not budget.is_known:
         budget = replace(budget, u=float(np.std(errors)))
     if not budget.u:

@@ -188,7 +188,7 @@ def notes(report: Report, budget: Budget, draws: str = "--draws") -> Iterator[st
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
             yield f"{budget.dof:.0f} effective degrees of freedom"
-        yield f"k comes from {budget.because}"
+        yield f"k {'is not known:' if math.isnan(budget.factor) else 'comes from'} {budget.because}"
     if (most := foremost(report, budget)) is not None:
         yield f"{most[0]} matters most: {percent(most[1])} of the variance"
     yield from map(_together, budget.summed)

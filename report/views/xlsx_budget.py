@@ -330,7 +330,7 @@ class _Written:
         for line, (name, formula, now, form) in enumerate(lines, start=row):
             self.style.text(self.sheet, line, 0, name, "name")
             if math.isnan(now):
-                self.style.text(self.sheet, line, 1, "not known: correlated sources have degrees of freedom")
+                self.style.text(self.sheet, line, 1, f"not known: {budget.because}")
             else:
                 self.number(line, 1, formula, now, form)
         row = self.statement(row + len(lines), at)

@@ -159,14 +159,15 @@ function sureOf(look, name, row) {
   return { texts: [...of(u), known ? figureText(rounded(factor, order(factor) - 2)) : "", known ? of(factor * u)[1] : ""], from, second };
 }
 
-// Why U may not hold: as issued, until a worker has looked at what second order adds.
+// Why U may not hold, or is not known: as issued, until a worker has looked at what second order adds.
 function doubtOf(look, name, row) {
   const more = LIVE.shared ? look.sure.more[[name, row]] : undefined, { floor, doubt } = LIVE.columns[name];
-  if (!more && !Number.isNaN(more)) return more === 0 ? "" : doubt;
+  if (more === undefined) return doubt;
   if (!knownU(look, name, row)) return "";
   const { u, factor } = look.sure.budget(name, row), low = floor || look.trace.declared[name].positive ? 0 : -Infinity;
   const fails = Math.abs(more) > look.sure.u(name, row) ** 2 || look.trace.sheet.value[name][row] - factor * u < low;
-  if (!(factor > 0)) return "";
+  if (!(factor > 0)) return doubt;
+  if (more === 0) return "";
   return `U ${fails ? "does" : "may"} not hold: second order ${more ? "counts" : "was not looked at"}${fails ? `; use loopsheet budget ${look.trace.address(name, row)} --draws 1000000` : ""}`;
 }
 
@@ -197,9 +198,9 @@ function writeUncertain(look) {
     line.cells[6].replaceChildren(...lacking ? [lacking] : told.flatMap((one, n) => (n ? [", ", ...one] : one)));
   }
   for (const told of LIVE.shared ? all(".headline .sure") : []) {
-    const box = told.parentElement, { cell: name, index } = box.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), [, , factor, wide] = sureOf(look, name, row)?.texts ?? [];
+    const box = told.parentElement, { cell: name, index } = box.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), [, u, factor, wide] = sureOf(look, name, row)?.texts ?? [];
     told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...behind(name), ` (k\u00a0=\u00a0${factor})`] : []));
-    const doubt = wide ? doubtOf(look, name, row) : "", at = box.querySelector(".doubt") ?? (doubt && make("span", { class: "doubt" }));
+    const doubt = u ? doubtOf(look, name, row) : "", at = box.querySelector(".doubt") ?? (doubt && make("span", { class: "doubt" }));
     if (at && !at.isConnected) told.after(at);
     if (at) at.replaceChildren(...(doubt ?? "").split(/(loopsheet .*)/).filter(Boolean).map((text, n) => (n ? make("code", {}, text) : text)));
   }
