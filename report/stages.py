@@ -104,7 +104,7 @@ def prepared(inputs: Inputs, ledger: Callable[[], Ledger]) -> Prepared:
     refusals.refuse_what_is_missing(sheet, inputs)
     made = Prepared(inputs, sheet)
     if inputs.workbook.curves and sheet.loops:
-        from .fitting.starts import begun
+        from .engines.fit_starts import begun
 
         made = replace(made, sheet=begun(sheet, inputs.workbook.curves, made.labels, made.data))
     return made

@@ -30,13 +30,13 @@ PARTS = {
             "test_intervals", "test_numpy_enclosed", "test_elementary",
             "test_engine_numpy", "test_engine_exact", "test_engine_javascript", "test_engine_excel",
             "test_roots", "test_root_certificates", "test_overflow", "test_values", "test_engines",
+            "test_fit_starts",
         ),
     ),
     "judge": (
         ("report/judge/*.py",),
         ("test_conditions", "test_enclosure", "test_analysis_engines", "test_oddities"),
     ),
-    "fitting": (("report/fitting/*.py",), ("test_fitting", "test_fitting_model")),
     "referee": (
         ("report/referee/*.py",),
         ("test_referee_parts", "test_referee_explanations", "test_referee"),

@@ -14,8 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import Expr, Rational, Symbol, atan, cos, exp, pi, sin, symbols
 
-from loopsheet.report.fitting.model import Adjustment, Model
-
 Array = NDArray[np.float64]
 FOLDER = Path(__file__).resolve().parent / "strd"
 
@@ -74,13 +72,6 @@ class Strd(NamedTuple):
     squares: float
     y: Array
     of: Mapping[Symbol, Array]
-
-    @property
-    def model(self) -> Model:
-        return Model(y - self.value, self.parameters, (*self.of, y))
-
-    def fit(self, start: Array) -> Adjustment:
-        return self.model.fit({**self.of, y: self.y}, {y: None}, start.tolist())
 
 
 def _numbers(text: str, end: str) -> Array:

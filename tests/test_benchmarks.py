@@ -60,13 +60,6 @@ def test_the_page_that_is_measured_is_the_one_that_is_built(
     assert page.count("data-cell") > 100
 
 
-def test_all_ways_to_fit_find_the_same(bench: Callable[[str], ModuleType]) -> None:
-    measured = bench("bench_fitting")
-    one = measured.nist_strd.nonlinear()["Misra1a"]
-    for way in measured.ways(one, one.starts[1]).values():
-        assert way() == pytest.approx(one.certified, rel=1e-8)
-
-
 def test_all_ways_to_draw_tell_the_same(bench: Callable[[str], ModuleType]) -> None:
     measured = bench("bench_monte_carlo")
     alone, *told = (way() for way in measured.ways(20_000).values())

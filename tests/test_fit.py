@@ -13,6 +13,7 @@ from typing import Any
 import nist_strd
 import numpy as np
 import pytest
+from adjusted import adjusted
 from nist_strd import Strd, digits
 from sympy import Expr, IndexedBase, Sum, Symbol, exp, sin, symbols
 
@@ -27,7 +28,6 @@ from loopsheet.report.cells.values import CODES, Values
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.fitting.model import Model
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.misfit import least_squares_of_errors
@@ -147,17 +147,17 @@ def test_weights_are_those_of_the_solver() -> None:
 
         return types.new_class("Weighed", (Method,), {}, fill)
 
-    symbol = dict(zip("abcty", symbols("a b c t y"), strict=True))
-    a, b, c, x, v = symbol.values()
-    found = Model(v - a - b * x - c * x**2, (a, b, c), (x, v)).fit({x: t, v: y}, {v: size}, [0, 0, 0])
+    a, b, c, x, v = symbols("a b c t y")
+    found = adjusted(a + b * x + c * x**2, v, (a, b, c), {x: t, v: y}, {v: size}, [0, 0, 0])
+    scatter = math.sqrt(found.chi2 / (len(t) - 3)) * found.u
     for u in ("stated", None):
         method = body_of(u)
         sheet = method.workbook.sheet(frozenset())
         data = {"t": t, "y": y, "q": 2 * size, **({"u_y": size} if u else {})}
         values = evaluate(sheet, {"readings": range(1, 15)}, data)
         assert cells(values, *"abc") == pytest.approx(found.parameters, rel=1e-12)
-        assert cells(values, "s_a", "s_b", "s_c") == pytest.approx(found.u_by_scatter, rel=1e-10)
-        assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-12)
+        assert cells(values, "s_a", "s_b", "s_c") == pytest.approx(scatter, rel=1e-10)
+        assert values.scalar("f_S") == pytest.approx(found.chi2, rel=1e-12)
         assert [sheet[name].unit for name in ("a", "b", "c", "f_s")] == ["m", "m/s", "m/s^2", "1"]
         assert [(curve.name, curve.weighed) for curve in method.workbook.curves] == [("f_S", True)]
 
@@ -391,8 +391,8 @@ def of_both(volts: Array, u_x: float, u_y: float) -> tuple[float, float]:
     found, dof = least_squares_of_errors(left(data), moved.T @ moved, np.full(6, u_y), 2)
     assert dof == 4
     a, b, x, y = symbols("a b x y")
-    model = Model(y - a - b * x, (a, b), (x, y))
-    return found, model.fit({x: TIME, y: volts}, {x: u_x, y: u_y}, [0, 1]).fitted.chi2
+    sizes = {x: np.full(6, u_x), y: np.full(6, u_y)}
+    return found, adjusted(a + b * x, y, (a, b), {x: TIME, y: volts}, sizes, [0, 1]).chi2
 
 
 def test_errors_of_both_variables_count_as_adjusted_points_do() -> None:

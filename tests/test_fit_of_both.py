@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from adjusted import adjusted
 from sympy import Expr, IndexedBase, Symbol, exp, symbols
 from test_fit import cells, k, n, write
-from test_fitting_model import PEARSON, YORK, same
-from test_fitting_model import x as abscissa
-from test_fitting_model import y as ordinate
 
 import loopsheet
 from loopsheet import Method, fit, measured, unknown
@@ -25,7 +23,6 @@ from loopsheet.report.cells.values import Values
 from loopsheet.report.cli import main
 from loopsheet.report.engines import exact
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.fitting.model import Model
 from loopsheet.report.study import Study
 
 LINE = """from loopsheet import Method, fit, let, measured, unknown
@@ -43,10 +40,22 @@ class Pearson(Method):
 """
 
 
+PEARSON = (
+    ("0", "0.9", "1.8", "2.6", "3.3", "4.4", "5.2", "6.1", "6.5", "7.4"),
+    ("5.9", "5.4", "4.4", "4.6", "3.5", "3.7", "2.8", "2.8", "2.4", "1.5"),
+)
+YORK = ((1000, 1000, 500, 800, 200, 80, 60, 20, 1.8, 1), (1, 1.8, 4, 8, 20, 20, 70, 70, 100, 500))
+
+
+def same(found: float, printed: str) -> bool:
+    """Whether a number rounds to what is printed."""
+    return f"{found:.{len(printed.partition('.')[2])}f}" == printed
+
+
 def pearson(folder: Path) -> Path:
     """A report folder of Pearson's data with York's weights."""
-    columns = (PEARSON[abscissa], YORK[abscissa], PEARSON[ordinate], YORK[ordinate])
-    rows = "".join(",".join(map(repr, map(float, each))) + "\n" for each in zip(*columns, strict=True))
+    (x, y), (u_x, u_y) = PEARSON, ([repr(weight**-0.5) for weight in own] for own in YORK)
+    rows = "".join(",".join(each) + "\n" for each in zip(x, u_x, y, u_y, strict=True))
     write(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
     return folder
 
@@ -64,6 +73,38 @@ def test_all_that_is_published_of_pearsons_data_with_yorks_weights(tmp_path: Pat
     assert same(float(report["a"].u), "0.29193")
     assert same(float(report["b"].u), "0.057617")
     assert not report.findings
+
+
+@pytest.mark.parametrize(
+    ("at", "rows", "u_x", "u_y", "printed"),
+    [
+        (
+            [1, 2, 3, 4, 5, 6], [3.3, 5.6, 7.1, 9.3, 10.7, 12.1], 0, [0.5] * 6,
+            ("1.867", "1.757", "0.465", "0.120", "-0.050", "1.665"),
+        ),
+        (
+            [1, 2, 3, 4, 5, 6], [3.2, 4.3, 7.6, 8.6, 11.7, 12.8], 0, [0.5, 0.5, 0.5, 1, 1, 1],
+            ("0.885", "2.057", "0.530", "0.178", "-0.082", "4.131"),
+        ),
+        (
+            [1.2, 1.9, 2.9, 4.0, 4.7, 5.9], [3.4, 4.4, 7.2, 8.5, 10.8, 13.5],
+            0.2, [0.2, 0.2, 0.2, 0.4, 0.4, 0.4],
+            ("0.5788", "2.1597", "0.4764", "0.1355", "-0.0577", "2.743"),
+        ),
+    ],
+    ids=["6.3, alike", "6.3, not alike", "7.4, in both"],
+)  # fmt: skip
+def test_examples_of_iso_28037(
+    at: list[float], rows: list[float], u_x: float, u_y: list[float], printed: tuple[str, ...]
+) -> None:
+    sheet = method_of(a + b * x, (0, 1)).workbook.sheet(frozenset())
+    given = {"x": at, "y": rows, "u_x": np.full(6, u_x), "u_y": u_y}
+    values = evaluate(sheet, {"readings": range(1, 7)}, {k: np.asarray(v, float) for k, v in given.items()})
+    sizes = cells(values, "s_a", "s_b") / values.scalar("f_s")
+    shared = values.scalar("r_a_b") * sizes[0] * sizes[1]
+    numbers = (*cells(values, "a", "b"), *sizes, shared, values.scalar("f_S"))
+    for number, text in zip(numbers, printed, strict=True):
+        assert same(number, text), (number, text)
 
 
 def test_what_misfits_is_told_by_the_errors_of_both(tmp_path: Path) -> None:
@@ -115,19 +156,17 @@ def test_a_curve_is_where_the_adjusted_points_have_it(name: str, engine: Any) ->
     sizes[y] = rng.uniform(0.02, 0.1, count)
     at[y] = true(*(at.get(each, np.nan) for each in (x, z)))
     data = {each: at[each] + rng.normal(0, sizes[each]) for each in at}
-    found = Model(y - model, (a, b), (*at,)).fit(data, sizes, [*start])
+    found = adjusted(model, y, (a, b), data, sizes, start)
     sheet = method_of(model, start).workbook.sheet(frozenset())
     given = {**{str(s): d for s, d in data.items()}, **{f"u_{s}": u for s, u in sizes.items()}}
     values: Any = engine(sheet, {"readings": range(1, count + 1)}, given)
     values = values if engine is evaluate else values.rounded(sheet)
     assert isinstance(values, Values)
     assert cells(values, "a", "b") == pytest.approx(found.parameters, rel=1e-9)
-    adjusted = cells(values, "s_a", "s_b") / values.scalar("f_s")
-    assert adjusted == pytest.approx(found.u, rel=1e-8)
-    assert values.scalar("f_S") == pytest.approx(found.fitted.chi2, rel=1e-9)
-    for column, symbol in enumerate(at):
-        if symbol != y:
-            assert values.value[f"f_at_{symbol}"] == pytest.approx(found.feet.points[:, column], rel=1e-8)
+    assert cells(values, "s_a", "s_b") / values.scalar("f_s") == pytest.approx(found.u, rel=1e-8)
+    assert values.scalar("f_S") == pytest.approx(found.chi2, rel=1e-9)
+    for symbol, points in found.points.items():
+        assert values.value[f"f_at_{symbol}"] == pytest.approx(points, rel=1e-8)
 
 
 def test_errors_of_one_variable_are_what_is_left_of_two() -> None:

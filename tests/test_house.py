@@ -94,14 +94,9 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         {"msgspec"},
     ),
     "report.plan": (DECLARED | rooms("content", "machine.kept", "plan"), ALGEBRA | {"msgspec"}),
-    # what engines may ask to fit; what is fitted is printed by them
-    "report.fitting.triangle": (set(), {"numpy"}),
-    "report.fitting.least_squares": (rooms("fitting.triangle"), {"numpy"}),
-    "report.fitting.feet": (rooms("fitting.triangle"), {"numpy"}),
     "report.engines": (DECLARED | rooms("engines", "plan"), NUMERIC),
     "report.engines.elementary": (set(), {"numpy"}),
     "report.engines.intervals": (rooms("engines.elementary"), {"numpy"}),
-    "report.fitting": (DECLARED | rooms("engines", "fitting"), {"numpy", "sympy"}),
     "report.result": (
         DECLARED | rooms("engines.exact", "files", "inputs", "result"),
         {"mpmath", "msgspec", "numpy"},
@@ -111,7 +106,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         NUMERIC,
     ),
     "report.uncertainty": (
-        DECLARED | rooms("engines", "fitting", "inputs", "judge", "result", "uncertainty"),
+        DECLARED | rooms("engines", "inputs", "judge", "result", "uncertainty"),
         {"numpy", "scipy"},
     ),
     "report.referee": (

@@ -275,7 +275,7 @@ def _begun(inputs: Inputs, values: Values, columns: Sequence[Column]) -> Sheet:
     sheet = Sheet(tuple(columns))
     if not there:
         return sheet
-    from ..fitting.starts import begun_at  # which imports sympy
+    from ..engines.fit_starts import begun_at  # which imports sympy
 
     return begun_at(sheet, there)
 

@@ -18,8 +18,8 @@ from test_live_uncertain import in_node
 from loopsheet.report.cli import main
 from loopsheet.report.engines import ENGINES, exact
 from loopsheet.report.engines.excel_loops import PASSES
+from loopsheet.report.engines.fit_starts import begun
 from loopsheet.report.engines.numpy import evaluate
-from loopsheet.report.fitting.starts import begun
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study

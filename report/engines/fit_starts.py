@@ -1,7 +1,7 @@
 """Where the passes of a fit begin: at its author's start, or, where that leads nowhere, where a solver ends.
 
 A sheet goes to the least sum of squares by steps that every engine can print, a workbook by a number of them.
-From far away, :func:`~loopsheet.report.fitting.least_squares.least_squares` finds what they do not. What it
+From far away, Levenberg's and Marquardt's method in SciPy (MINPACK's lmder) finds what they do not. What it
 has to know of a model are cells of the sheet itself; and of where it ends the passes prove that the sum has
 no slope there, as they do of any other place.
 """
@@ -11,24 +11,28 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from sympy import Rational, sqrt
 
 from ...derivations.equation import Equation, Kind
 from ..cells.values import Status, Values
 from ..column import Column, Formula, Given
-from ..engines.excel_loops import PASSES
-from ..engines.numpy import Program, evaluate
 from ..quantity import Bounds
 from ..sheet import Loop, Sheet
 from ..workbook import Curve
-from .least_squares import least_squares
-from .triangle import Array
+from .excel_loops import PASSES
+from .numpy import Program, evaluate
 
 __all__ = ["begun", "begun_at"]
 
+STEPS, LAST = 5000, 1e-15
+"""How many steps it may take, and the share of anything that is not worth another."""
+
+Array = NDArray[np.float64]
 Labels = Mapping[str, Sequence[int]]
 
 
@@ -102,21 +106,29 @@ def _solved(sheet: Sheet, curve: Curve, loop: Loop, values: Values) -> dict[str,
     given = [known[name] for name in known if free[name].axis == rows[0].axis]
     there = np.all(np.isfinite(given), axis=0)
 
-    def at(place: Iterable[float]) -> Values:
+    @lru_cache(maxsize=1)  # residuals and slopes are asked for one after the other
+    def at(*place: float) -> Values:
         own = dict(zip(curve.fitted, place, strict=True))
         return evaluate(free, values.given_labels, known | own, program)
 
-    last = [at([math.nan] * len(firsts))]
-
     def residuals(place: Array) -> Array:
-        last[0] = at(place)
-        return last[0].value[rows[0].name][there]
+        return at(*place).value[rows[0].name][there]
 
     def jacobian(place: Array) -> Array:
-        return -np.stack([last[0].value[row.name][there] for row in rows[1:]], axis=1)
+        return -np.stack([at(*place).value[row.name][there] for row in rows[1:]], axis=1)
 
-    end = least_squares(residuals, jacobian, np.array([last[0].scalar(first.name) for first in firsts]))
-    return dict(zip(curve.fitted, end.reached.tolist(), strict=True))
+    nowhere = at(*[math.nan] * len(firsts))
+    start = np.array([nowhere.scalar(first.name) for first in firsts])
+    if np.count_nonzero(there) < len(start) or not np.isfinite(residuals(start)).all():
+        return dict.fromkeys(curve.fitted, math.nan)
+    from scipy.optimize import (
+        least_squares,  # a quarter of a second, for fits that do not settle by themselves
+    )
+
+    ends = dict.fromkeys(("ftol", "xtol", "gtol"), LAST)
+    with np.errstate(all="ignore"):  # a step to where the model has no value is not taken
+        end = least_squares(residuals, start, jacobian, method="lm", x_scale="jac", max_nfev=STEPS, **ends)
+    return dict(zip(curve.fitted, end.x.tolist(), strict=True))
 
 
 def _rule(column: Column) -> Any:

@@ -1,1 +1,0 @@
-"""Least squares for any workbook: a solver that says how it ended, and models with errors in any variable."""
