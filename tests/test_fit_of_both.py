@@ -115,6 +115,28 @@ def test_what_misfits_is_told_by_the_errors_of_both(tmp_path: Path) -> None:
     assert misfit.chi2 == pytest.approx(report.values.scalar("line_S"), rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("stated", "told"),
+    [
+        ('[uncertainty.correlation]\n"x, y" = "0.4"\n', "x and y are correlated"),
+        (
+            '[uncertainty.shared.zero]\nof = "y"\nstated = "u = 0.1"\ngroups = [[1, 2, 3]]\n',
+            "'zero' is shared",
+        ),
+        ('[uncertainty.shared.zero]\nof = "y"\nstated = "u = 0.1"\n', ""),  # the intercept alone feels it
+    ],
+)
+def test_weights_that_leave_out_what_is_stated_are_told(tmp_path: Path, stated: str, told: str) -> None:
+    folder = pearson(tmp_path)
+    with (folder / "report.toml").open("a", encoding="utf-8") as file:
+        file.write(stated)
+    said = [check.message for check in Study(folder).report.oddities if check.note == "warning"]
+    ends = f"{told}: a and b are not the likeliest numbers; their u counts it"
+    assert any(each.endswith(f"line_S and its weights leave out that {ends}") for each in said) == bool(
+        told
+    ), said
+
+
 # ------------------------------------------------------------------------------ by another way
 
 a, b, x, y, z = symbols("a b x y z")

@@ -6,6 +6,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +20,7 @@ from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
 from ..messages.errors import listing
 from ..quantity import behind
-from ..result.chi_square import RARE, freedom, head, tail, tied
+from ..result.chi_square import RARE, freedom, head, tail, tied, ties
 from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
@@ -391,6 +392,14 @@ class _Oddities:
         return "".join(f"; without {told} it is {each}" for each in left)
 
     def of_curve(self, curve: Curve) -> Check:
+        """What of the residuals; and whether its weights take errors for independent ones that are not."""
+        found, own = self.of_residuals(curve), {e.name for e in self.sheet.ancestors(self.sheet[curve.name])}
+        told = ties(self.report, [of for u, of in self.sheet.weighed.items() if u in own])
+        said = f"{found.message}; {curve.name} and its weights leave out that {told}: "
+        said += f"{listing(curve.fitted, last='and')} are not the likeliest numbers; their u counts it"
+        return replace(found, message=said, note=found.note or "warning") if told else found
+
+    def of_residuals(self, curve: Curve) -> Check:
         """Whether the uncertainties of its rows make the residuals of a curve as large as they are."""
         known = self.report.uncertain().misfits.get(curve.name)
         if known is None:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import mpmath
+
+from ..messages.errors import listing
 
 if TYPE_CHECKING:
     from ..workbook import SquareSum
     from .result import Report
 
-__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "number", "tail", "tied"]
+__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "number", "tail", "tied", "ties"]
 
 RARE = 0.01
 """A sum of squares that is as large, or as small, less often than this is not taken for chance."""
@@ -24,6 +27,16 @@ def tied(report: Report) -> bool:
     stated = report.inputs.uncertainty
     of = set[str]().union(*(each.statements for each in stated.shared), *stated.correlations)
     return not of.isdisjoint(report.sheet.weighed.values())
+
+
+def ties(report: Report, weighed: Collection[str]) -> str:
+    """What makes errors of columns no independent ones: ``x and y are correlated``; empty if nothing."""
+    stated = report.inputs.uncertainty
+    paired = [pair for pair in (*stated.correlations, stated.paired) if len({*pair} & {*weighed}) > 1]
+    told = [f"{listing(pair, last='and')} are correlated" for pair in paired]
+    shared = [each for each in stated.shared if each.groups or len({*each.statements} & {*weighed}) > 1]
+    told += [f"'{each.name}' is shared" for each in shared if not {*weighed}.isdisjoint(each.statements)]
+    return listing(told, last="and")
 
 
 def freedom(squares: SquareSum, report: Report) -> int:
