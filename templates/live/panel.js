@@ -17,17 +17,25 @@ function makePanel() {
   placePanel();
 }
 
+// Half of what holds 95 % of the draws, and over u by the law of propagation. Errors that are known with few degrees of
+// freedom are drawn from t distributions: they deviate by more than u, and as often from U.
+const halfOf = ({ ends }) => (ends ? (ends[1] - ends[0]) / 2 : NaN);
+function factorOf(look, name, row) {
+  const { factor } = look.sure.budget(name, row);
+  return factor > 0 ? factor : studentFactor(Infinity);
+}
+
 function writePanel(look) {
   if (!page.panel) return;
   const rows = LIVE.headline.map(([name, index], place) => {
     const [was, row] = [page.issued, look].map((one) => one.trace.row(name, index)), before = page.issued.cell(name, was).text, now = row < 0 ? "–" : look.cell(name, row).text, same = before === now;
-    // Draws may tell another standard uncertainty than the law of propagation does, or none.
-    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], of = knownU(look, name, row);
-    const other = live && drawn && !(Math.abs(drawn.u / LIVE.columns[name].scale / of - 1) <= OFF), u = !other && of;
+    // Draws may tell another interval than the law of propagation does, or none.
+    const live = LIVE.shared && row >= 0, drawn = carlo.found[[name, row]], u = knownU(look, name, row);
+    const other = live && drawn && !(u && Math.abs(halfOf(drawn) / LIVE.columns[name].scale / (u * factorOf(look, name, row)) - 1) <= OFF);
     const more = live && isEdited() && look.trace.isOk(name, row) ? [...(other ? ["draws differ"] : []), ...(place < MOST_DRAWN ? [shortDraws(name, row)] : [])] : [];
     const called = index ? ` ${page.issued.trace.word(name, was) ?? index}` : "";
     return make("tr", {}, make("th", { scope: "row" }, make("abbr", { title: meaningOf(name) }, ...part(name, "symbol")), called),
-      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
+      make("td", {}, same ? "" : before), make("td", { class: same ? "" : "changed" }, now, u && !other ? ` (${told(u, LIVE.most).digits})` : "", ...more.map((text) => make("span", {}, text))));
   });
   const head = make("tr", {}, ...["result", "as issued", LIVE.shared ? "now (u)" : "now"].map((text) => make("th", { scope: "col" }, text)));
   if (LIVE.shared) head.lastChild.append(make("span", {}, `95\u00a0% of ${DRAWS} draws`));

@@ -14,6 +14,7 @@ import pytest
 from driving import Live
 from scipy import stats
 
+from loopsheet.report.cli import main
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import _Draws
@@ -114,6 +115,34 @@ def test_the_panel_has_no_first_order_where_tails_are_too_long_for_u(live: Live)
     assert "draws differ" in row.inner_text()
     live.page.locator('[data-cell="C_eiv"]').first.click()
     live.page.wait_for_selector('#bar-draws[data-u="NaN"]')
+
+
+FEW = """from loopsheet import Method, let, mean, measured
+
+
+class Few(Method, rows="readings", headline="V"):
+    "Readings whose uncertainty is known with few degrees of freedom: a t distribution deviates by 1.6 u."
+    v = measured("V", "reading")
+    V = let(mean(v), "voltage", "V")
+"""
+
+
+def test_errors_of_few_degrees_of_freedom_leave_the_panel_its_uncertainty(
+    open_page: Open, tmp_path: Path
+) -> None:
+    (tmp_path / "workbook.py").write_text(FEW)
+    stated = (
+        'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nv = "u = 0.1 V, dof = 3"\n'
+    )
+    (tmp_path / "report.toml").write_text(stated)
+    (tmp_path / "m.csv").write_text("reading,v [V]\n1,9.31\n2,9.42\n3,9.28\n")
+    main(["build", str(tmp_path), "--out", str(tmp_path / "out")])
+    live = open_page(tmp_path / "out" / "report.html")
+    live.type("v", 2, "9.43")
+    row = live.page.locator("#live-panel tbody tr").first
+    row.get_by_text(re.compile(r"\d … \d")).wait_for()
+    assert row.inner_text().split("\t")[-1].startswith("9.340 (58)"), row.inner_text()
+    assert "draws differ" not in row.inner_text()
 
 
 def test_the_same_edit_draws_the_same(open_page: Open) -> None:
