@@ -188,6 +188,7 @@ def test_the_words_of_a_row_that_is_left_out_stand_with_it(tmp_path: Path) -> No
         ("operator", "Outlier?", "unknown column 'Outlier?'"),
         ("operator", "operator [1]", "unknown column 'operator'"),
         ("remark", "operator", "'operator'"),
+        ("operator", "grain", None),  # four letters of 'reading', which is there
         ("open, 5 %", "open", None),
         ('"door open, 5 %"', "7", "unknown column 'remark'"),  # numbers may be meant to be computed with
         ("T [degC]", "T", "the column 'T' does not name its unit"),

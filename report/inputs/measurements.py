@@ -305,11 +305,15 @@ class _Reading:
 
         The latter have no unit and no misspelt name of another.
         """
+        missing = {*known} - {head.name for head in self.heads if head is not None}
         for place, (head, name) in enumerate(zip(self.heads, names, strict=True)):
             if name in self.groups:
                 yield name
                 continue
-            if head is None or head.unit is not None or not name or close(name, known):
+            if head is None or head.unit is not None or not name:
+                continue
+            # What is there is hardly misspelt as well: 'name' beside 'sample' is what it says.
+            if close(name, missing) or close(name, known, 0.75):
                 continue
             if _EXCLUDING.fullmatch(name):
                 continue  # whoever wrote it thinks that its rows take no part

@@ -70,14 +70,14 @@ def suggest(word: str, known: Iterable[str]) -> str:
     return f"did you mean '{nearest}'?" if (nearest := close(word, known)) else ""
 
 
-def close(word: str, known: Iterable[str]) -> str | None:
+def close(word: str, known: Iterable[str], likeness: float = 0.6) -> str | None:
     """Return the known word that is nearest to a misspelt one, if one is near; else one of its letters."""
     if len(word) > 60:  # difflib takes quadratic time, and no name of ours is as long
         return None
     import difflib  # only errors need it
 
     by_lower = {name.lower(): name for name in reversed(list(known))}
-    found = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
+    found = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=likeness)
     letters = [*filter(str.isalnum, word.lower())]
     found += [name for name in by_lower if [*filter(str.isalnum, name)] == letters]
     return by_lower[found[0]] if found else None
