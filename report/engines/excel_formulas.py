@@ -21,7 +21,7 @@ from ..cells.grid import FilledDown, Grouped, Place, as_issued, checked
 from ..cells.layout import Layout, evenly
 from ..cells.values import CODES, Status
 from ..named import within
-from ..plan.nodes import Leaf, Map, Plan, RootNode, Total
+from ..plan.nodes import Leaf, Map, Plan, RootNode
 from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Iterated, MemberAxis, Reference, RepeatAxis, Sheet
@@ -434,28 +434,6 @@ class Writing:
                 gone = f"IF(ISNUMBER({other}),{gone},{other})"
         found = f"IF(ISNUMBER({last}),{found},{failed.replace('{}', gone)})"
         return f"IF(ISNUMBER({start}),{found},{start})"
-
-    def elsewhere(self, expression: Expr, in_sum: Mapping[Symbol, tuple[Total, bool]]) -> str:
-        """The formula of a number in SI, without its equals sign, for a cell of any other worksheet.
-
-        `in_sum`: what stands for whether a row counts in a sum, or for how many do.
-        """
-        self.here = ""
-
-        def symbol(each: Symbol, rows: bool = False) -> str:
-            if each not in in_sum:
-                return self.symbol(each, rows)
-            total, alone = in_sum[each]
-            summing = self.summing(total.column.name)
-            return summing.counts(total.over.name) if alone else summing.number_kept(total.over.name)
-
-        return str(ExcelPrinter(symbol, self.total).factor(expression))
-
-    def counts(self, axis: str) -> str:
-        """1 if a row of an axis, whose number is left open, has all values that are summed, else 0."""
-        summed = [self.place_of(leaf) for leaf, over in self.named if over and over.name == axis]
-        cells = (place.cell(0, self.here).removesuffix(str(place.row + 1)) for place in summed)
-        return f"IF({'*'.join(f'ISNUMBER({cell}{{row}})' for cell in cells)},1,0)"
 
     def drawn(self, node: Map) -> str:
         """A cell for a chart: its value, or what charts leave out."""
