@@ -343,7 +343,7 @@ def test_what_the_referee_found_is_kept_of_the_same_bytes_alone(
     (found,) = asked
     assert found.joint is not None
     assert found.joint.worst is not None
-    assert any(witness.printed is not None for witness in found.joint.witness)
+    assert found.joint.witness
     assert found.explanations or found.slips
     assert first.referee == again.referee == there.referee == found
     assert there.referee.joint is not None

@@ -167,7 +167,9 @@ def test_the_referee_leaves_an_empty_cell_empty(tmp_path: Path, printed: str, ve
     assert referee is not None
     (found,) = referee.values
     assert found.verdict == verdict
-    assert all((each.cell, each.index) != ("b", (2,)) for each in found.witness)
+    assert referee.joint is not None
+    assert referee.joint.witness
+    assert all((each.cell, each.index) != ("b", (2,)) for each in referee.joint.witness)
 
 
 def test_the_page_keeps_an_empty_cell_empty(tmp_path: Path) -> None:

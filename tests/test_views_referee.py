@@ -302,7 +302,7 @@ def test_a_table_that_settles_it_is_named(paper: Report) -> None:
 
 
 def test_nothing_can_be_asked_for_where_no_cell_has_a_value(paper: Report) -> None:
-    verdict = Verdict(NOT_CHECKABLE, missing="no value")
+    verdict = Verdict(NOT_CHECKABLE)
     asked = tuple(replace(c, refereed=verdict) for c in paper.comparisons)
     report = replace(paper, comparisons=asked, referee=Referee((verdict,) * len(asked)))
     found = sections_of(report)

@@ -62,16 +62,9 @@ class Unknown:
         low, high = max(low, value - self.held), min(high, value + self.held)
         return self.allowed.clip(min(low, value - self.reach), max(high, value + self.reach))
 
-    @cached_property
-    def scale(self) -> float:
-        """The unit that it is printed in, in SI."""
-        return float(self.printed.scale) if self.printed is not None else 1.0
-
     def witness(self, value: float) -> Witness:
-        """A value of it, in that unit."""
-        return Witness(
-            self.column, self.index, value if self.printed is None else self.printed.of(value), self.printed
-        )
+        """A value of it, in the unit that it is printed in."""
+        return Witness(self.column, self.index, value if self.printed is None else self.printed.of(value))
 
 
 @dataclass(frozen=True, eq=False)

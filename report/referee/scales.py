@@ -85,7 +85,6 @@ def _other(mode: str) -> str:
 class _Misplaced:
     """Given cells that may stand in another unit."""
 
-    members: Sequence[int]
     box: Box
     change: Change
     """What that says."""
@@ -166,19 +165,19 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
         if search.worth(search.resting_on([*members, *problem.fitted_to(name)])):
             for scale in _scales(printed):
                 if (box := _scaled(problem, members, scale.factor)) is not None:
-                    tried.append(_Misplaced(members, box, scale.column(name, INPUT)))
+                    tried.append(_Misplaced(box, scale.column(name, INPUT)))
         for n in members if len(members) > 1 else ():
             if search.worth(search.resting_on([n])):
                 unknown = problem.unknowns[n]
                 for scale in _POINTS:
                     if (box := _scaled(problem, [n], scale.factor)) is not None:
                         change = scale.cell(name, INPUT, unknown.index, unknown.printed or printed)
-                        tried.append(_Misplaced([n], box, change))
+                        tried.append(_Misplaced(box, change))
     for scale, columns in alike.items():  # a calculator that was left in radians spares no angle
         members = [n for column in columns for n in column]
         box = _scaled(problem, members, scale.factor) if len(columns) > 1 else None
         if box is not None and search.worth(search.resting_on(members)):
-            tried.append(_Misplaced(members, box, scale.column("", INPUT)))
+            tried.append(_Misplaced(box, scale.column("", INPUT)))
     alive = [tried[place] for place in search.screened([one.box for one in tried])]
     if not alive:
         return

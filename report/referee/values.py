@@ -31,9 +31,8 @@ def verdicts(campaign: Campaign, published: Sequence[PublishedValue]) -> tuple[V
     found: dict[int, Verdict] = {}
     groups: dict[str, list[int]] = {}
     for n, value in enumerate(published):
-        cell = campaign.values.cell(value.cell, value.index)
-        if cell.value is None:
-            found[n] = Verdict(NOT_CHECKABLE, missing=cell.reason)
+        if campaign.values.cell(value.cell, value.index).value is None:
+            found[n] = Verdict(NOT_CHECKABLE)
         else:
             # What is free elsewhere follows from the inputs where it is the one that is asked for.
             groups.setdefault(value.cell if value.cell in campaign.free else "", []).append(n)
@@ -64,7 +63,7 @@ class _Alone:
         cells = np.diagonal(self.problem.evaluate(meeting))
         off = np.nan_to_num(np.abs(self.problem.mismatch(cells)), nan=np.inf)
         seen = np.stack([least, largest, self.here, cells], axis=-1)
-        return [self._verdict(n, seen[n], meeting[n], float(off[n])) for n in range(len(cells))]
+        return [self._verdict(n, seen[n], float(off[n])) for n in range(len(cells))]
 
     def _furthest(self, corners: Array, way: int) -> tuple[Array, Array]:
         """For each value the corner of the box where it is furthest down (way -1) or up (1), and it itself.
@@ -113,18 +112,16 @@ class _Alone:
         found: Array = start + share[:, None] * (end - start)
         return found
 
-    def _verdict(self, n: int, seen: Array, point: Array, mismatch: float) -> Verdict:
+    def _verdict(self, n: int, seen: Array, mismatch: float) -> Verdict:
         problem, published = self.problem, self.problem.published[n]
         bound_low = bound_high = None
         if prints_same(float(self.here[n]), published.printed):
-            point, mismatch = problem.box.start, abs(float(problem.mismatch(self.here)[n]))
-            word = EXACT
+            mismatch, word = abs(float(problem.mismatch(self.here)[n])), EXACT
         else:
             if not mismatch <= 1:
                 alone = best(problem.only([n]), until=0.5)
                 seen = np.append(seen, alone.cells)
-                if alone.mismatch < mismatch:
-                    point, mismatch = alone.point, alone.mismatch
+                mismatch = min(mismatch, alone.mismatch)
             word = REACHABLE
             if not mismatch <= 1:
                 # What is certain takes longest to find, and is asked for only where something is claimed.
@@ -139,12 +136,7 @@ class _Alone:
         ]
         seen = seen[np.isfinite(seen)]
         low, high = (None, None) if free or not seen.size else (float(seen.min()), float(seen.max()))
-        return Verdict(
-            word, low, high, bound_low, bound_high,
-            mismatch=mismatch if np.isfinite(mismatch) else None,
-            witness=problem.witness(point) if word in (EXACT, REACHABLE) else (),
-            u=self._u(n),
-        )  # fmt: skip
+        return Verdict(word, low, high, bound_low, bound_high, _number(mismatch))
 
     def _else(self, n: int, bound_low: Array, bound_high: Array) -> str:
         """The word for a value that nothing was found for."""

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..inputs.published import PublishedValue
-from ..quantity import Printed
 
 __all__ = [
     "ALL",
@@ -81,8 +80,6 @@ class Witness:
     index: tuple[int, ...]
     value: float
     """In the unit that the cell was printed in; in SI if it was not printed."""
-    printed: Printed | None
-    """As it was printed; None for what the publication does not print."""
 
 
 @dataclass(frozen=True)
@@ -101,12 +98,6 @@ class Verdict:
     that is not known."""
     mismatch: float | None = None
     """The least that was found, in half units of the last printed digit."""
-    witness: tuple[Witness, ...] = ()
-    """The input that prints as given and yields it, if one was found."""
-    u: float | None = None
-    """Combined standard uncertainty in SI, where the user gave uncertainties."""
-    missing: str = ""
-    """For what is not checkable: what is missing."""
 
 
 @dataclass(frozen=True)
