@@ -40,15 +40,9 @@ class Law(ABC):
     def mean(self) -> float:
         """How far the expectation is from the given number."""
 
-    @property
     @abstractmethod
-    def skewness(self) -> float:
-        """The third central moment."""
-
-    @property
-    @abstractmethod
-    def kurtosis(self) -> float:
-        """The fourth central moment."""
+    def moment(self, power: int) -> float:
+        """The third central moment, or the fourth."""
 
     @abstractmethod
     def below(self, z: float) -> float:
@@ -91,13 +85,8 @@ class _Turned(Law):
     def mean(self) -> float:
         return -self.of.mean
 
-    @property
-    def skewness(self) -> float:
-        return -self.of.skewness
-
-    @property
-    def kurtosis(self) -> float:
-        return self.of.kurtosis
+    def moment(self, power: int) -> float:
+        return -self.of.moment(power) if power % 2 else self.of.moment(power)
 
     def below(self, z: float) -> float:
         return 1 - self.of.below(-z)
@@ -117,8 +106,10 @@ class Exponential(Law):
     """
 
     mean = 0.0
-    skewness = 2.0
-    kurtosis = 9.0
+
+    def moment(self, power: int) -> float:
+        """As above."""
+        return {3: 2.0, 4: 9.0}[power]
 
     def below(self, z: float) -> float:
         """As above.
@@ -173,15 +164,9 @@ class TruncatedNormal(Law):
         """As above."""
         return self._moments[0] / self.sd
 
-    @property
-    def skewness(self) -> float:
-        """The third central moment."""
-        return self._moments[2]
-
-    @property
-    def kurtosis(self) -> float:
-        """The fourth central moment."""
-        return self._moments[3]
+    def moment(self, power: int) -> float:
+        """As above."""
+        return self._moments[power - 1]
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -228,18 +213,9 @@ class Samples(Law):
         """As above."""
         return float(self.errors.mean())
 
-    def _moment(self, power: int) -> float:
+    def moment(self, power: int) -> float:
+        """As above."""
         return float(np.mean((self.errors - self.mean) ** power))
-
-    @property
-    def skewness(self) -> float:
-        """The third central moment."""
-        return self._moment(3)
-
-    @property
-    def kurtosis(self) -> float:
-        """The fourth central moment."""
-        return self._moment(4)
 
     def below(self, z: float) -> float:
         """As above."""

@@ -44,7 +44,7 @@ def test_a_law_is_that_of_scipy(name: str) -> None:
     skewness, kurtosis = (float(each) for each in known.stats(moments="sk"))
     assert float(known.std()) == pytest.approx(1, rel=1e-9)
     assert law.mean == pytest.approx(float(known.mean()), abs=1e-9)
-    assert (law.skewness, law.kurtosis) == pytest.approx((skewness, kurtosis + 3), rel=1e-7, abs=1e-9)
+    assert (law.moment(3), law.moment(4)) == pytest.approx((skewness, kurtosis + 3), rel=1e-7, abs=1e-9)
     shares = np.linspace(0.001, 0.999, 21)
     assert law.quantile(shares) == pytest.approx(known.ppf(shares), rel=1e-9, abs=1e-9)
     for z in np.linspace(-3, 3, 13):

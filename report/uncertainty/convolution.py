@@ -131,24 +131,18 @@ class Convolved(Law):
     def _below(self) -> Array:
         return np.cumsum(self._bins[1])
 
-    def _moment(self, power: int, around: float) -> float:
+    def _around(self, number: float, power: int) -> float:
         ends, shares = self._bins
-        return float(shares @ (ends - 0.5 / FINE - around) ** power)
+        return float(shares @ (ends - 0.5 / FINE - number) ** power)
 
     @property
     def mean(self) -> float:
         """As above."""
-        return self._moment(1, 0.0)
+        return self._around(0.0, 1)
 
-    @property
-    def skewness(self) -> float:
-        """The third central moment."""
-        return self._moment(3, self.mean)
-
-    @property
-    def kurtosis(self) -> float:
-        """The fourth central moment."""
-        return self._moment(4, self.mean)
+    def moment(self, power: int) -> float:
+        """As above."""
+        return self._around(self.mean, power)
 
     def below(self, z: float) -> float:
         """As above."""

@@ -85,8 +85,8 @@ class SecondOrder:
         weights: Array,
     ) -> None:
         self.sources, self.root, self.weights = sources, root, weights @ root
-        own = np.array([s.law.kurtosis if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
-        leans = np.array([s.law.skewness if s.law else 0.0 for s in sources])
+        own = np.array([s.law.moment(4) if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
+        leans = np.array([s.law.moment(3) if s.law else 0.0 for s in sources])
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
         self.fourth, self.third = np.where(alone, own, 3.0), np.where(alone, leans, 0.0)
         self.width = 2 * len(sources) * max(1, chain.number)
