@@ -26,12 +26,10 @@ def exchanged_in_tables(search: Search) -> Iterator[Explained]:
             one, other = published[n], published[m]
             if one.printed.text == other.printed.text or not search.worth({n, m}):
                 continue
+            texts = one.printed.text, other.printed.text
+            change = Change("label", one.cell, one.index, one.source, *texts, other=other.index)
             changed = search.problem.reprinted({n: other.printed, m: one.printed})
-            now = search.met(changed)
-            if now is not None:
-                texts = one.printed.text, other.printed.text
-                change = Change("label", one.cell, one.index, one.source, *texts, other=other.index)
-                yield search.explained([change], changed, changed.box, now)
+            yield from search.if_met([change], changed)
 
 
 def exchanged_rows(search: Search) -> Iterator[Explained]:
@@ -42,18 +40,16 @@ def exchanged_rows(search: Search) -> Iterator[Explained]:
             rows = tables.setdefault((source, axis.name), {})
             for n in members:
                 rows.setdefault(problem.published[n].index, {})[cell] = n
-    asked, changes = list[tuple[Problem, Box | None]](), list[Change]()
+    tried = list[tuple[Change, Problem, Box | None]]()
     for (source, _), rows in tables.items():
         for one, other in combinations(rows, 2):
             pairs = [(rows[one][cell], rows[other][cell]) for cell in rows[one] if cell in rows[other]]
             prints = {n: problem.published[m].printed for pair in pairs for n, m in (pair, pair[::-1])}
             moved = [n for n, print_ in prints.items() if print_.text != problem.published[n].printed.text]
             if len(moved) > 2 and search.worth(moved):  # two numbers of a column are exchanged alone
-                asked.append((problem.reprinted(prints), None))
-                changes.append(Change("label", "", one, source, "", "", other=other))
-    for place, now in search.likeliest(asked):
-        changed = asked[place][0]
-        yield search.explained([changes[place]], changed, changed.box, now)
+                change = Change("label", "", one, source, "", "", other=other)
+                tried.append((change, problem.reprinted(prints), None))
+    yield from search.of_likeliest(tried)
 
 
 def exchanged_inputs(search: Search) -> Iterator[Explained]:
@@ -92,11 +88,8 @@ def columns(search: Search) -> Iterator[Explained]:
         if not alike or not search.worth(members):
             continue
         for column in alike:
-            changed = search.problem.renamed(members, column.name)
-            now = search.met(changed)
-            if now is not None:
-                change = Change("label", cell, (), source, cell, column.name)
-                yield search.explained([change], changed, changed.box, now)
+            change = Change("label", cell, (), source, cell, column.name)
+            yield from search.if_met([change], search.problem.renamed(members, column.name))
 
 
 def orders(search: Search) -> Iterator[Explained]:

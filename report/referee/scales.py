@@ -54,11 +54,8 @@ def truncated_inputs(search: Search) -> Iterator[Explained]:
         if np.array_equal((low, high), (problem.box.low[members], problem.box.high[members])):
             continue  # of what is exact nothing was cut
         middles = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
-        moved = problem.box.moved(members, low, high, middles)
-        now = search.met(problem, moved)
-        if now is not None:
-            change = Change("truncated", name, (), INPUT, was, would)
-            yield search.explained([change], problem, moved, now)
+        change = Change("truncated", name, (), INPUT, was, would)
+        yield from search.if_met([change], problem, problem.box.moved(members, low, high, middles))
 
 
 def truncated_tables(search: Search) -> Iterator[Explained]:
@@ -71,23 +68,11 @@ def truncated_tables(search: Search) -> Iterator[Explained]:
         changed = problem.reprinted({
             n: replace(problem.published[n].printed, mode=_other(was)) for n in members
         })  # fmt: skip
-        now = search.met(changed)
-        if now is not None:
-            change = Change("truncated", cell, (), source, was, _other(was))
-            yield search.explained([change], changed, changed.box, now)
+        yield from search.if_met([Change("truncated", cell, (), source, was, _other(was))], changed)
 
 
 def _other(mode: str) -> str:
     return "rounded" if mode == "truncated" else "truncated"
-
-
-@dataclass(frozen=True)
-class _Misplaced:
-    """Given cells that may stand in another unit."""
-
-    box: Box
-    change: Change
-    """What that says."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +139,7 @@ def shifted(of: Printed, power: int) -> Printed:
 
 def misplaced_inputs(search: Search) -> Iterator[Explained]:
     """A given column in another unit than is said, doubled or halved; a cell of it off by a power of ten."""
-    problem, tried, alike = search.problem, list[_Misplaced](), dict[_Scale, list[list[int]]]()
+    problem, tried, alike = search.problem, list[tuple[Change, Box]](), dict[_Scale, list[list[int]]]()
     for name, members in problem.rows.items():
         printed = problem.unknowns[members[0]].printed
         if printed is None or problem.sheet[name].exact or not problem.campaign.suspects(name):
@@ -165,26 +150,27 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
         if search.worth(search.resting_on([*members, *problem.fitted_to(name)])):
             for scale in _scales(printed):
                 if (box := _scaled(problem, members, scale.factor)) is not None:
-                    tried.append(_Misplaced(box, scale.column(name, INPUT)))
+                    tried.append((scale.column(name, INPUT), box))
         for n in members if len(members) > 1 else ():
             if search.worth(search.resting_on([n])):
                 unknown = problem.unknowns[n]
                 for scale in _POINTS:
                     if (box := _scaled(problem, [n], scale.factor)) is not None:
                         change = scale.cell(name, INPUT, unknown.index, unknown.printed or printed)
-                        tried.append(_Misplaced(box, change))
+                        tried.append((change, box))
     for scale, columns in alike.items():  # a calculator that was left in radians spares no angle
         members = [n for column in columns for n in column]
         box = _scaled(problem, members, scale.factor) if len(columns) > 1 else None
         if box is not None and search.worth(search.resting_on(members)):
-            tried.append(_Misplaced(box, scale.column("", INPUT)))
-    alive = [tried[place] for place in search.screened([one.box for one in tried])]
+            tried.append((scale.column("", INPUT), box))
+    alive = [tried[place] for place in search.screened([box for _, box in tried])]
     if not alive:
         return
-    starts = problem.restarted(np.stack([one.box.start for one in alive]))
-    asked = [(problem, replace(one.box, start=start)) for one, start in zip(alive, starts, strict=True)]
-    for place, now in search.likeliest(asked):
-        yield search.explained([alive[place].change], *asked[place], now)
+    starts = problem.restarted(np.stack([box.start for _, box in alive]))
+    yield from search.of_likeliest([
+        (change, problem, replace(box, start=start))
+        for (change, box), start in zip(alive, starts, strict=True)
+    ])  # fmt: skip
 
 
 def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | None:
@@ -202,24 +188,23 @@ def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | 
 
 def misplaced_tables(search: Search) -> Iterator[Explained]:
     """A published column, or a cell of it, in another unit than is said, or wrong by a factor."""
-    problem, asked, changes = search.problem, list[tuple[Problem, Box]](), list[Change]()
+    problem, tried = search.problem, list[tuple[Change, Problem, Box | None]]()
     for (source, cell), members in search.groups.items():
         if search.worth(members):
             more = _OFTEN if len(members) > 1 else ()
             for scale in (*_scales(problem.published[members[0]].printed), *more):
-                asked.append((_multiplied(problem, members, scale.factor), problem.box))
-                changes.append(scale.column(cell, source))
+                changed = _multiplied(problem, members, scale.factor)
+                tried.append((scale.column(cell, source), changed, problem.box))
             for text, times in _of_counts(problem, members):
-                asked.append((_multiplied(problem, members, *times), problem.box))
-                changes.append(Change("factor", cell, (), source, "", text))
+                changed = _multiplied(problem, members, *times)
+                tried.append((Change("factor", cell, (), source, "", text), changed, problem.box))
         for n in members if len(members) > 1 else ():
             if search.worth([n]):
                 value = problem.published[n]
                 for scale in _POINTS:
-                    asked.append((_multiplied(problem, [n], scale.factor), problem.box))
-                    changes.append(scale.cell(cell, source, value.index, value.printed))
-    for place, now in search.likeliest(asked):
-        yield search.explained([changes[place]], *asked[place], now)
+                    change = scale.cell(cell, source, value.index, value.printed)
+                    tried.append((change, _multiplied(problem, [n], scale.factor), problem.box))
+    yield from search.of_likeliest(tried)
 
 
 def misplaced_together(search: Search) -> Iterator[Explained]:
@@ -234,8 +219,8 @@ def misplaced_together(search: Search) -> Iterator[Explained]:
         if scale is not _SAME:
             changed = _multiplied(changed, members, scale.factor)
             changes.append(scale.column(cell, source))
-    if len(changes) > 1 and (now := search.met(changed)) is not None:
-        yield search.explained(changes, changed, changed.box, now)
+    if len(changes) > 1:
+        yield from search.if_met(changes, changed)
 
 
 def _off(times: Array, scale: _Scale) -> float:

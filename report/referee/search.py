@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -128,6 +128,18 @@ class Search:
         self.open += len(asked) - len(hopeful)
         found = [(n, self.met(*asked[n])) for n in sorted(hopeful)]
         return [(n, now) for n, now in found if now is not None]
+
+    def if_met(self, changes: list[Change], problem: Problem, box: Box | None = None) -> Iterator[Explained]:
+        """What changes of the print explain, if an input then yields all values."""
+        found = self.met(problem, box)
+        if found is not None:
+            yield self.explained(changes, problem, box or problem.box, found)
+
+    def of_likeliest(self, tried: Sequence[tuple[Change, Problem, Box | None]]) -> Iterator[Explained]:
+        """What each of many changes of a kind explains, of those that promise most."""
+        for place, found in self.likeliest([(problem, box) for _, problem, box in tried]):
+            change, problem, box = tried[place]
+            yield self.explained([change], problem, box or problem.box, found)
 
     def alive(self, boxes: Sequence[Box], problem: Problem | None = None) -> list[int]:
         """The boxes that may hold an input that yields all values."""
