@@ -61,7 +61,8 @@ def campaign(folder: Path, tests: int) -> Path:
 def page(folder: Path, target: Path) -> Path:
     """The page of a report folder, as a file."""
     report = Study(folder).computed
-    drawn = {figure.name: figures.svg(report, figure.drawing) for figure in report.workbook.figures}
+    made = {each.name: figures.files(report, each.drawing, ["svg"]) for each in report.workbook.figures}
+    drawn = {name: files["svg"].decode() for name, files in made.items()}
     target.write_text(html.render(report, drawn, stages.program(report)), encoding="utf-8")
     return target
 

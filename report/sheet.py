@@ -179,10 +179,6 @@ class Sheet:
 
         return Sheet(tuple(map(bound, self.columns)))
 
-    def limited(self, declared: Mapping[str, tuple[Limit, ...]]) -> Sheet:
-        """The sheet with where its columns are expected."""
-        return Sheet(tuple(replace(c, limits=declared.get(c.name, c.limits)) for c in self.columns))
-
     @cached_property
     def bounds(self) -> dict[str, Bounds]:
         """What each given column may be, in SI; one that says how many rows there are counts from 1."""

@@ -98,7 +98,7 @@ def test_javascript_in_chromium(
 def test_a_wrong_value_and_a_wrong_status_are_named(
     report: Report, judge: engines.Judge, engine: str
 ) -> None:
-    found = readers.of_values(report.values, engine)
+    found = readers.of_values(report.values)
     value, status = ({name: list(each) for name, each in m.items()} for m in (found.value, found.status))
     assert value["alpha"][3] is not None
     value["alpha"][3] = float(value["alpha"][3]) + 100 * engines.EPS * judge.bounds["alpha"][3]
@@ -115,7 +115,7 @@ def test_a_wrong_value_and_a_wrong_status_are_named(
 def test_eight_units_are_believed_and_no_more(
     report: Report, judge: engines.Judge, units: float, believed: bool
 ) -> None:
-    found = readers.of_values(report.values, "node")
+    found = replace(readers.of_values(report.values), engine="node")
     value = {name: list(each) for name, each in found.value.items()}
     true, bound = judge.judged.value["alpha"][7], judge.bounds["alpha"][7]
     value["alpha"][7] = float(true + units * engines.EPS * bound)
@@ -125,7 +125,7 @@ def test_eight_units_are_believed_and_no_more(
 
 
 def test_steps_that_do_not_settle_are_told_as_such(report: Report, judge: engines.Judge) -> None:
-    found = readers.of_values(report.values, "xlsx")
+    found = replace(readers.of_values(report.values), engine="xlsx")
     status = {**found.status, "alpha": ["#STEPS!", *found.status["alpha"][1:]]}
     (finding,) = judge.agreement(replace(found, status=status)).findings
     assert finding == (
@@ -149,7 +149,7 @@ def test_rows_that_are_missing_are_a_finding(report: Report, judge: engines.Judg
 
 
 def test_what_a_file_has_cut_is_not_held_against_the_engine(report: Report, judge: engines.Judge) -> None:
-    found = readers.of_values(report.values, "xlsx")
+    found = replace(readers.of_values(report.values), engine="xlsx")
     cut = {name: [float(f"{x:.14e}") for x in each] for name, each in found.value.items()}
     lost = {name: [readers._lost(x) for x in each] for name, each in cut.items()}
     before, after = (judge.agreement(replace(found, value=cut, rounded=each)) for each in ({}, lost))

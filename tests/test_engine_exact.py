@@ -7,6 +7,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from judged_values import compare
 from mpmath import mpf
 from sympy import Expr, Integer, Piecewise, Rational, Sum, Symbol, cos, log, sqrt
 from uncertain_data import uncertain
@@ -15,7 +16,6 @@ from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.judge import engines
 from loopsheet.report.judge.engines import _Tally
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
@@ -143,14 +143,14 @@ def test_the_comparison_of_engines_finds_what_differs() -> None:
     data = {"v": [2.0, 3.0], "e": [0.5, 0.48], "x_p": [2e-5, 3e-5], "beta": 1.5, "ball_mass": 8e-3}
     labels, data = {"tests": [1, 2]}, uncertain({**data, "points_per_pair": 3})
     values = engine.evaluate(SHEET, labels, data, PROGRAM)
-    agreement = engines.compare(values, labels, data)
+    agreement = compare(values, labels, data)
     assert agreement.findings == ()
     assert agreement.cells == sum(len(values.labels(column)) for column in SHEET.columns)
     assert agreement.units < 1
     assert agreement.summary.startswith(f"numpy agrees with 50 digits on {agreement.cells} cells within ")
     values.value["C_log"][0] *= 1 + 1e-9
     values.status["alpha"][0] = Status.NOROOT
-    findings = engines.compare(values, labels, data).findings
+    findings = compare(values, labels, data).findings
     assert findings == (
         "alpha[1-2]: numpy says #NOROOT!, 50 digits say ok",
         "C_log: numpy is off by 1.0e-09",

@@ -39,7 +39,9 @@ from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import javascript
 from loopsheet.report.engines.kernels import compiled
 from loopsheet.report.engines.numpy import Program
+from loopsheet.report.engines.numpy_texts import program_texts
 from loopsheet.report.judge.engines import LIMIT, Judge
+from loopsheet.report.plan.lowering import lowered
 
 pytestmark = [pytest.mark.campaigns, pytest.mark.usefixtures("anew")]
 
@@ -178,7 +180,8 @@ def numpy_mutants(program: Program) -> Mutants:
     def run(text: str) -> Any:
         return compiled(text[text.index("def ") :], np)
 
-    lines = program.source.partition("\n\n# ")[0].splitlines()
+    texts = program_texts(program.sheet, lowered(program.sheet))
+    lines = texts["sheet"].splitlines()
     for place, line in enumerate(lines):
         # What is not changed: which data are allowed, and which rows are fetched.
         if not re.search(r"def |run\.(data|given|rows|ordinal|size|kept)", line):
@@ -187,11 +190,11 @@ def numpy_mutants(program: Program) -> Mutants:
                 text = "\n".join([*lines[:place], mutant, *lines[place + 1 :]])
                 yield name[1] if name else "", what, replace(program, function=run(text))
     for name, root in program.roots.items():
-        for what, text in changed(root.source.partition("# value\n")[2]):
+        for what, text in changed(texts["roots"][name]["value"]):
             roots = {**program.roots, name: replace(root, value=run(text))}
             yield name, what, replace(program, roots=roots)
     for first, loop in program.loops.items():
-        lines = loop.source.partition("# pass\n")[2].splitlines()
+        lines = texts["loops"][first]["pass"].splitlines()
         for place, line in enumerate(lines):
             name = re.search(r'(?:run\.formula\("| )(\w+?)(?:"|_sum_\d+ =)', line)
             if name and name[1] not in STEPS:

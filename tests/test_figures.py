@@ -17,6 +17,7 @@ from xml.etree import ElementTree
 import grouped
 import numpy as np
 import pytest
+from drawn_files import pdf_of, svg_of
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
@@ -230,7 +231,7 @@ def test_a_drawing_as_two_files_is_that_of_each(
 ) -> None:
     for name in DRAWINGS:
         report = report_of("paper")
-        svg, pdf = figures.svg(report, name).encode(), figures.pdf(report, name)
+        svg, pdf = svg_of(report, name).encode(), pdf_of(report, name)
         assert files_of("paper", name) == {"svg": svg, "pdf": pdf}
 
 
@@ -238,7 +239,7 @@ def test_a_drawing_leaves_the_settings_of_matplotlib_alone(report_of: Callable[.
     import matplotlib
 
     before = dict(matplotlib.rcParams)
-    figures.svg(report_of("paper"), "loops")
+    svg_of(report_of("paper"), "loops")
     assert dict(matplotlib.rcParams) == before
 
 

@@ -14,11 +14,12 @@ import pytest
 
 from loopsheet.report.cells.marks import margins
 from loopsheet.report.column import Column, Given, Root
-from loopsheet.report.engines.numpy import Program
+from loopsheet.report.engines.numpy_texts import program_texts
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.kept_sheet import sheet_of
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.partly import is_partly
+from loopsheet.report.plan.lowering import lowered
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
@@ -88,7 +89,7 @@ def test_what_is_not_known_is_declared_again(both: list[Sheet]) -> None:
         assert own.nonnegative is column.nonnegative
         assert [r.cell for r in sheet.named(own)] == [r.cell for r in declared.named(column)]
     assert [axis.maps for axis in sheet.axes] == [axis.maps for axis in declared.axes]
-    assert Program.of(sheet).source == Program.of(declared).source
+    assert program_texts(sheet, lowered(sheet)) == program_texts(declared, lowered(declared))
     assert sheet["x_p"] != sheet["v"]
     given = replace(sheet["alpha"], rule=Given("free"), requires=())
     assert not is_partly(given)

@@ -89,12 +89,12 @@ def agrees(found: Any, report: Report, before: Report) -> None:
         values = [x if x is None else report.shown[name].of(x) for x in cells["values"]]
         texts = [figure and figure.text for figure in shown(values, report.places(name))]
         for row, u in enumerate(known.u[name]):
-            kept = known.bent[name][row] or issued.bent[name][row] or not report.values.value[name][row]
+            kept = known.second[name][row] or issued.second[name][row] or not report.values.value[name][row]
             if not isinstance(column.rule, Given) and not kept:
                 assert cells["shown"][row] == texts[row], (name, row)
             # What comes to zero where a loop rests has an uncertainty of nothing but the last pass.
             at_rest = name in passed and not report.values.value[name][row]
-            if "u" in cells and not known.bent[name][row] and not at_rest:
+            if "u" in cells and not known.second[name][row] and not at_rest:
                 wanted = None if math.isnan(u) else pytest.approx(u, rel=1e-5, abs=1e-300)
                 assert cells["u"][row] == wanted, (name, row)
 
@@ -136,7 +136,7 @@ def test_what_bends_as_issued_has_the_digits_of_its_first_order_far_away(told: T
         path.write_text(path.read_text(encoding="utf-8").replace("44.61", depth), encoding="utf-8")
         texts[depth] = Study(folder).computed
     before, after = texts.values()
-    assert [report.uncertain().bent["chi2_eiv"][0] for report in (before, after)] == [True, False]
+    assert [bool(report.uncertain().second["chi2_eiv"][0]) for report in (before, after)] == [True, False]
     for edits, report in (([], before), ([("x_p", 3, "60.00")], after)):
         found = told(before, edits)["cells"]["chi2_eiv"]["shown"]
         assert found == [figure and figure.text for figure in report.figures("chi2_eiv")]
@@ -152,7 +152,7 @@ def test_what_bends_as_issued_has_its_digits_where_it_is_less(told: Told, tmp_pa
         toml.replace(f'E_1 = "{texts[0]}"', f'E_1 = "{texts[1]}"'), encoding="utf-8"
     )
     after = Study(folder).computed
-    assert before.uncertain().bent["v_over_Y"].all()
+    assert before.uncertain().second["v_over_Y"].all()
     found = told(before, [("E_1", 0, texts[1].partition(" ")[0])])["cells"]["v_over_Y"]["shown"]
     assert found == [figure and figure.text for figure in after.figures("v_over_Y")]
 

@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,7 @@ def limited(inside: Basic | Bounds, source: str = "") -> Sheet:
     """A column with one limit, and another that rests on it."""
     definition = Equation("(1)", (Symbol("c"), 2 * b.symbol), "", Kind.DEFINITION)
     limit = Limit(inside, "odd", source)
-    return Sheet((a, b, Column("c", None, Formula(definition), "m"))).limited({"a": (limit,)})
+    return Sheet((replace(a, limits=(limit,)), b, Column("c", None, Formula(definition), "m")))
 
 
 def marks_of(sheet: Sheet, **data: Any) -> Marks:
@@ -91,8 +92,9 @@ def test_only_comparisons_can_be_limits() -> None:
 
 
 def test_names_that_are_taken_stay_free() -> None:
-    sheet = Sheet((*limited(Bounds(1)).columns, Column("a_margin", None, Given())))
-    sheet = sheet.limited({"a": (Limit(Bounds(1), "low"), Limit(Bounds(high=2), "high"))})
+    _, *others = limited(Bounds(1)).columns
+    own = replace(a, limits=(Limit(Bounds(1), "low"), Limit(Bounds(high=2), "high")))
+    sheet = Sheet((own, *others, Column("a_margin", None, Given())))
     assert [margin.column.name for margin in margins(sheet)] == ["a_margin_2", "a_margin_3"]
 
 

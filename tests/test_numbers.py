@@ -68,7 +68,7 @@ def test_the_eye_gets_a_minus_sign_thin_spaces_and_powers_of_ten(
 
 
 def test_siunitx_gets_plain_digits() -> None:
-    assert rounded(-1.019e9, 4).tex == r"\num{-1.019e9}"
+    assert rounded(-1.019e9, 4).plain == "-1.019e9"
 
 
 def test_a_rounded_nothing_has_no_sign() -> None:

@@ -8,6 +8,7 @@ import engine_cases
 import mpmath
 import numpy as np
 import pytest
+from judged_values import compare
 from slipped_campaigns import PAPER, write
 from sympy import Ne, Piecewise, Sum, Symbol, acos, acoth, asin, cos, exp, log, symbols, tan
 from uncertain_data import uncertain
@@ -15,7 +16,6 @@ from uncertain_data import uncertain
 from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.judge.engines import compare
 from loopsheet.report.judge.readers import Case, run_javascript
 from loopsheet.report.plan.domain import defined, is_positive
 from loopsheet.report.plan.nodes import RowSum

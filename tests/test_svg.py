@@ -7,6 +7,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from drawn_files import svg_of
 from matplotlib.figure import Figure
 
 from loopsheet.report.result.result import Report
@@ -88,7 +89,7 @@ def is_drawn_alike(ours: str, long: str) -> None:
 @pytest.mark.parametrize("name", ["hysteresis", "lankarani", "loops", "alpha_pairs"])
 def test_a_picture_goes_the_same_ways_and_says_the_same(report: Report, name: str) -> None:
     figure = figures.draw(report, name)
-    ours, long = figures.svg(report, name), theirs(figure)
+    ours, long = svg_of(report, name), theirs(figure)
     assert len(ours) < len(long) / 3
     is_drawn_alike(ours, long)
 

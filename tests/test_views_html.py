@@ -10,6 +10,7 @@ from pathlib import Path
 
 import html5lib
 import pytest
+from drawn_files import svg_of
 from large_campaigns import write
 
 from loopsheet.derivations.vocabulary import Vocabulary
@@ -24,7 +25,7 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.sheet import Given, RepeatAxis
 from loopsheet.report.study import Study
-from loopsheet.report.views import figures, html, latex
+from loopsheet.report.views import html, latex
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ ((( report ))) {{ 7 * 7 }}"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="480" height="240"><path d="M0 0"/></svg>'
@@ -145,7 +146,7 @@ def test_nothing_is_loaded_and_nothing_can_run(page: str, tree: ET.Element) -> N
 
 
 def test_real_pictures_keep_their_parts_and_their_styles_apart(report: Report) -> None:
-    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
+    drawn = {figure.name: svg_of(report, figure.name) for figure in report.workbook.figures}
     text = html.render(report, drawn)
     parser = html5lib.HTMLParser(tree=html5lib.getTreeBuilder("etree"))
     tree = parser.parse(text)

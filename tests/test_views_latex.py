@@ -8,12 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from drawn_files import pdf_of
 from made_files import COMPLAINTS, log_of_latex
 
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.views import figures, latex, pdf
+from loopsheet.report.views import latex, pdf
 
 HOSTILE = "<script>alert(1)</script> & 50% \\input{/etc/passwd} $x_1$ ☃ Șα"
 
@@ -91,7 +92,7 @@ def test_the_paper_compiles_without_complaint(
     names = [figure.name for figure in report.workbook.figures]
     (tmp_path / "figures").mkdir()
     for name in names:
-        (tmp_path / "figures" / f"{name}.pdf").write_bytes(figures.pdf(report, name))
+        (tmp_path / "figures" / f"{name}.pdf").write_bytes(pdf_of(report, name))
     (tmp_path / "report.tex").write_text(latex.render(hostile, names), encoding="utf-8")
     pdf.compile(tmp_path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["figures", "report.pdf", "report.tex"]

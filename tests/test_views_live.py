@@ -17,6 +17,7 @@ from typing import Any
 
 import html5lib
 import pytest
+from drawn_files import svg_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -33,7 +34,7 @@ from loopsheet.report.referee import print_as, prints_same
 from loopsheet.report.result.numbers import Numeral, at, decimals, last_place, order, shown, stated
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
-from loopsheet.report.views import compact, figures, html, live, live_files
+from loopsheet.report.views import compact, html, live, live_files
 from loopsheet.report.views.live_uncertain import digits
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -45,7 +46,7 @@ RUNTIME = ROOT / "templates" / "engines" / "runtime.js"
 
 @pytest.fixture(scope="module")
 def page(report: Report) -> str:
-    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
+    drawn = {figure.name: svg_of(report, figure.name) for figure in report.workbook.figures}
     return html.render(report, drawn, program=javascript.program(report.sheet))
 
 
@@ -80,7 +81,7 @@ def test_policy_names_the_hashes_of_exactly_this_style_and_this_script(page: str
 
 
 def test_same_report_makes_the_same_page(report: Report, page: str) -> None:
-    drawn = {figure.name: figures.svg(report, figure.name) for figure in report.workbook.figures}
+    drawn = {figure.name: svg_of(report, figure.name) for figure in report.workbook.figures}
     assert html.render(report, drawn, program=javascript.program(report.sheet)) == page
 
 
@@ -158,9 +159,9 @@ def test_only_what_is_of_second_order_or_an_uncertainty_keeps_its_digits(
         else:
             shown = column["digits"] if "of" in column else column.get("digits", 4)
             assert shown == digits(report, report.sheet[name])["digits"], name
-        bent = report.uncertain().bent.get(name, ())
+        second = report.uncertain().second.get(name, ())
         assert len(column.get("kept", ())) == report.values.value[name].size * report.sheet[name].is_u, name
-        assert len(column.get("bent", ())) == sum(bent), name
+        assert len(column.get("bent", ())) == sum(each != 0 for each in second), name
     row = report.values.row(report.sheet["C"], (3, 4))
     both = [report.uncertain().second["C"][row], report.values.value["C"][row]]
     assert known["columns"]["C"]["bent"] == {"3-4": pytest.approx(both, rel=1e-5)}

@@ -10,6 +10,7 @@ from typing import Any
 
 import html5lib
 import pytest
+from drawn_files import pdf_of, svg_of
 from made_files import COMPLAINTS, log_of_latex
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
@@ -187,7 +188,7 @@ def test_the_article_compiles_without_overfull_boxes(
     specs = figures.of(paper)
     (tmp_path / "figures").mkdir()
     for spec in specs:
-        (tmp_path / "figures" / f"{spec.name}.pdf").write_bytes(figures.pdf(paper, spec.drawing))
+        (tmp_path / "figures" / f"{spec.name}.pdf").write_bytes(pdf_of(paper, spec.drawing))
     hostile = with_sources(paper, {"text": HOSTILE})
     (tmp_path / "report.tex").write_text(
         latex.render(hostile, [spec.name for spec in specs]), encoding="utf-8"
@@ -416,9 +417,9 @@ def test_what_is_out_of_reach_is_said_in_words(paper: Report) -> None:
 
 
 def test_the_picture_is_the_same_bytes_and_small(paper: Report) -> None:
-    assert figures.svg(paper, FIGURE) == figures.svg(paper, FIGURE)
-    assert figures.pdf(paper, FIGURE) == figures.pdf(paper, FIGURE)
-    pictures, style = html.inlined({FIGURE: figures.svg(paper, FIGURE)})
+    assert svg_of(paper, FIGURE) == svg_of(paper, FIGURE)
+    assert pdf_of(paper, FIGURE) == pdf_of(paper, FIGURE)
+    pictures, style = html.inlined({FIGURE: svg_of(paper, FIGURE)})
     assert len(pictures[FIGURE]) + len(style) < 8_000
 
 
@@ -434,7 +435,7 @@ def test_every_verdict_can_be_drawn(paper: Report) -> None:
     report = with_verdicts(paper, lambda n, verdict: replace(verdict, verdict=kinds[n % 4]))
     seen = words(report)
     assert {"unreachable", "not found", "within uncertainty"} <= set(seen)
-    ET.fromstring(figures.svg(report, FIGURE))
+    ET.fromstring(svg_of(report, FIGURE))
 
 
 def test_an_endless_interval_ends_in_an_arrowhead(paper: Report) -> None:
@@ -468,7 +469,7 @@ def test_a_hostile_source_is_drawn_as_text(paper: Report, source: str) -> None:
         assert box.x1 <= drawn.bbox.x1, text
     for (one, its), (other, others) in combinations(boxes, 2):
         assert not its.overlaps(others), f"{one!r} overlaps {other!r}"
-    short, _ = html.inlined({FIGURE: figures.svg(report, FIGURE)})
+    short, _ = html.inlined({FIGURE: svg_of(report, FIGURE)})
     image = html.picture(short[FIGURE], source)
     assert "<script" not in image
     parsed = html5lib.parse(image, namespaceHTMLElements=False)
@@ -494,4 +495,4 @@ def test_a_truncated_print_has_its_band_on_one_side(paper: Report) -> None:
     cut = replace(first, published=replace(first.published, printed=printed))
     report = replace(paper, comparisons=(cut, *paper.comparisons[1:]))
     assert reach.rows(report)[0].band == pytest.approx((0, 1))
-    ET.fromstring(figures.svg(report, FIGURE))
+    ET.fromstring(svg_of(report, FIGURE))

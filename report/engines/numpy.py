@@ -50,8 +50,6 @@ class Program:
     """By column name."""
     loops: Mapping[str, LoopProgram]
     """By column name."""
-    source: str
-    """The text of all of it."""
     functions: Any = SAME
     """What computes exponentials, logarithms and powers."""
     _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
@@ -104,12 +102,7 @@ class Program:
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         loops = {name: LoopProgram.of(loop, functions) for name, loop in texts["loops"].items()}
-        sources = {name: root.source for name, root in roots.items()}
-        sources |= {name: loop.source for name, loop in loops.items()}
-        parts = (f"# {name}\n{own}" for name, own in sources.items())
-        function = compiled(texts["sheet"], functions)
-        source = "\n\n".join([texts["sheet"], *parts])
-        return cls(sheet, known, function, roots, loops, source, functions)
+        return cls(sheet, known, compiled(texts["sheet"], functions), roots, loops, functions)
 
     def run(
         self,

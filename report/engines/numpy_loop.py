@@ -35,15 +35,12 @@ class LoopProgram:
     start: Function
     once: Function
     """`start` and `once`: the first values of the iterated ones; a pass. They are called with a run."""
-    source: str
-    """The text of both."""
 
     @classmethod
     def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> Self:
         """The functions of the texts that :func:`~loopsheet.report.engines.numpy_texts.loop_texts` prints."""
         start, once = (compiled(texts[name], functions) for name in ("start", "pass"))
-        source = f"# start\n{texts['start']}\n# pass\n{texts['pass']}"
-        return cls(tuple(texts["iterated"]), tuple(texts["formulas"]), start, once, source)
+        return cls(tuple(texts["iterated"]), tuple(texts["formulas"]), start, once)
 
 
 class Settling:

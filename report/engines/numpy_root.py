@@ -78,8 +78,6 @@ class RootProgram:
     """The equation, and the same with nothing cancelling."""
     value: Function
     """The cell's value."""
-    source: str
-    """The text of all of them."""
     enclosing: Enclosing | None = None
     """What intervals are put into (:func:`~loopsheet.report.engines.certified.enclosing`), where the number
     of roots is not certified for all inputs at once."""
@@ -90,16 +88,12 @@ class RootProgram:
     @classmethod
     def of(cls, texts: Mapping[str, Any], functions: Any = SAME) -> RootProgram:
         """The functions of the texts that :func:`~loopsheet.report.engines.numpy_texts.root_texts` prints."""
-        fixed = Kernel.of_plain(texts["fixed"], functions)
         low, high = texts["told"]
-        bodies = [texts[name] for name in _BODIES]
-        at, newton, step, check, value = (compiled(text, functions) for text in bodies)
-        parts = (f"# {name}\n{text}" for name, text in zip(_BODIES, bodies, strict=True))
+        at, newton, step, check, value = (compiled(texts[name], functions) for name in _BODIES)
         return cls(
             texts["arguments"], frozenset(texts["terms_of"]), (low, high), texts["turning"], texts["steps"],
-            fixed, Kernel.of_plain(texts["constants"], functions), tuple(texts["totals"]),
-            at, newton, step, check, value,
-            "\n".join([f"# fixed\n{fixed.source}", *parts]),
+            Kernel.of_plain(texts["fixed"], functions), Kernel.of_plain(texts["constants"], functions),
+            tuple(texts["totals"]), at, newton, step, check, value,
             None if texts["enclosing"] is None else Enclosing.of_plain(texts["enclosing"]),
         )  # fmt: skip
 

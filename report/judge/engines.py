@@ -23,9 +23,9 @@ from ..quantity import SMALLEST
 from ..result.agreement import LIMIT, Agreement
 from ..sheet import Column, Sheet
 from .bounds import bounds
-from .readers import Case, Reading, of_values
+from .readers import Case, Reading
 
-__all__ = ["LIMIT", "Agreement", "Judge", "compare", "compare_all"]
+__all__ = ["LIMIT", "Agreement", "Judge", "compare_all"]
 
 EPS = float(np.finfo(float).eps)
 
@@ -174,15 +174,6 @@ class _Tally:
 def _addresses(values: Values, column: Column) -> list[str]:
     labels = values.labels(column)
     return [Cell(column.name, label, None, Status.OK).address for label in labels]
-
-
-def compare(values: Values, labels: Mapping[str, Sequence[int]], exact_data: Mapping[str, Any]) -> Agreement:
-    """Evaluate the sheet at 50 digits and compare NumPy's values.
-
-    `values`: what the engine found. `labels` and `exact_data`: as for
-    :func:`loopsheet.report.engines.exact.evaluate`.
-    """
-    return Judge.of(values.sheet, values.layouts, labels, exact_data).agreement(of_values(values))
 
 
 def compare_all(judge: Judge, case: Case) -> tuple[Agreement, ...]:

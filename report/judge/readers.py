@@ -106,8 +106,8 @@ class Reading:
     """What of the budgets it has otherwise than they were issued."""
 
 
-def of_values(values: Values, engine: str = "numpy") -> Reading:
-    """What an engine of this package found.
+def of_values(values: Values) -> Reading:
+    """What NumPy found.
 
     `values`: without a batch dimension.
     """
@@ -116,7 +116,7 @@ def of_values(values: Values, engine: str = "numpy") -> Reading:
         codes[name] = [CODES[Status(code)] for code in values.status[name].tolist()]
         pairs = zip(values.value[name].tolist(), codes[name], strict=True)
         numbers[name] = [number if code == OK else None for number, code in pairs]
-    return Reading(engine, "", numbers, codes)
+    return Reading("numpy", "", numbers, codes)
 
 
 def of_case(case: Case) -> Reading | None:

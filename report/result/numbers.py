@@ -89,11 +89,6 @@ class Numeral:
         """The power of ten, `` × 10⁹``; empty if none is written."""
         return "" if self.exponent is None else f"\u00a0×\u00a010{str(self.exponent).translate(RAISED)}"
 
-    @property
-    def tex(self) -> str:
-        """For LaTeX."""
-        return rf"\num{{{self.plain}}}"
-
 
 def read(text: str) -> Numeral | None:
     """Read a printed number as it stands, for its alignment; None if it is not plain digits."""

@@ -211,10 +211,6 @@ class Report:
         """The equations of its workbook."""
         return self.algebra()
 
-    def proof(self, label: str) -> Proof:
-        """The proof of an equation by its label, ``(12a)``."""
-        return next(proof for proof in self.proofs if proof.equation.label == label)
-
     # --- numbers as they are shown, in every view
 
     def words(self, column: Column) -> dict[tuple[int, ...], str]:

@@ -393,11 +393,6 @@ class Uncertainties:
     scatter by far less."""
 
     @property
-    def bent(self) -> dict[str, NDArray[np.bool_]]:
-        """Of shape (rows,), by column name; whether terms of second order are a part of it."""
-        return {name: second != 0 for name, second in self.second.items()}
-
-    @property
     def advice(self) -> dict[str, str]:
         """Of which cells of the headline U may not hold, and why."""
         return {each.cell: each.advice for each in self.budgets if each.advice}

@@ -17,7 +17,7 @@ from . import card_pictures, charts, drawing, reach
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw", "drawings", "files", "of", "pdf", "svg"]
+__all__ = ["draw", "drawings", "files", "of"]
 
 
 def drawings(workbook: Workbook) -> Mapping[str, Callable[[Report], Figure]]:
@@ -62,24 +62,8 @@ def draw(report: Report, name: str) -> Figure:
     return figure
 
 
-def svg(report: Report, name: str) -> str:
-    """A drawing as SVG text, without a date and without anything to load.
-
-    `report` and `name`: as for :func:`draw`.
-    """
-    return files(report, name, ["svg"])["svg"].decode()
-
-
-def pdf(report: Report, name: str) -> bytes:
-    """A drawing as a PDF page of its own size, without a date.
-
-    `report` and `name`: as for :func:`draw`.
-    """
-    return files(report, name, ["pdf"])["pdf"]
-
-
 def files(report: Report, name: str, forms: Collection[str]) -> dict[str, bytes]:
-    """A drawing that is made once, as a file of each form.
+    """A drawing that is made once, as a file of each form, without a date and without anything to load.
 
     `report` and `name`: as for :func:`draw`. `forms`: ``svg``, ``pdf``.
     """

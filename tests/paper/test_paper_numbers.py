@@ -6,6 +6,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from judged_values import compare
 from mpmath import mpf
 from scipy.optimize import least_squares
 
@@ -13,7 +14,6 @@ from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.judge import engines
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
@@ -137,7 +137,7 @@ def test_the_papers_fit_is_the_log_log_one() -> None:
 
 def test_both_engines_agree_on_every_cell_of_the_paper(values: Values) -> None:
     prepared = Study(PAPER).prepared
-    agreement = engines.compare(values, prepared.labels, prepared.exact_data)
+    agreement = compare(values, prepared.labels, prepared.exact_data)
     assert agreement.findings == ()
     assert agreement.cells == 2228
     assert agreement.worst < 2e-13

@@ -101,7 +101,7 @@ def test_page_shows_what_a_build_of_its_files_shows(
     )
     assert driving.alike(driving.shown(ours), driving.shown(theirs))
     # In digits of cells terms of second order stay as issued; of a column all are under one power of ten.
-    bent = {name for made in (report, built) for name, rows in made.uncertain().bent.items() if rows.any()}
+    bent = {name for made in (report, built) for name, rows in made.uncertain().second.items() if rows.any()}
     assert "alpha" not in bent
     assert [cell.text for cell in ours if cell.name not in bent] == [
         cell.text for cell in theirs if cell.name not in bent
