@@ -72,10 +72,10 @@ _DIGITS = re.compile(r"digits?")
 _CALLED = re.compile(r"[A-Za-z]\(|=\s*\(")
 """What a formula has, ``u = sqrt(N)``, and a unit has not, ``N/m^(3/2)``."""
 _KEYS = {"u": {"dof"}, "U": {"k", "p", "dof"}, "s": {"n", "dof"}, "t scale": {"dof"}, "t sd": {"dof"}}
+"""What may stand behind each beginning."""
 _ANYWHERE = Bounds()
 _CUT = {"u", "U"}
 """What may be cut off."""
-"""What may stand behind each beginning."""
 LARGEST = 10**60
 """Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
 _LIMIT_KEYS = {"k", "p", "dof"}
