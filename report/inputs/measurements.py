@@ -10,13 +10,13 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ...derivations.unit_text import ParsedUnit, UnitError, degrees, examples, is_pure, misfit, parse_unit
+from ...derivations.unit_text import ParsedUnit, UnitError, is_pure, parse_unit
 from ..distribution import Error
 from ..messages.errors import Findings, close, listing
 from ..workbook import RowTable
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
 from .keys import LEFT_OUT
-from .number_text import NumberError, read_printed, read_value
+from .number_text import NumberError, read_printed, read_unit_of, read_value
 from .spelling import Alike, alike, in_case, same
 from .stated import PERCENT
 from .taken import Taken, alone
@@ -545,25 +545,11 @@ def read_unit(
     head = None if place is None else heads[place]
     if place is None or head is None or head.unit is None:
         return head, None
-    field = table.header[place]
-    expected = parse_unit(column.unit)
-    try:
-        unit = parse_unit(head.unit.strip() or "1")
-    except UnitError as error:
-        shift = head.start + head.unit.index(head.unit.strip())
-        at = table.at(field, shift + error.start, len(error.text))
-        findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=examples(expected))
-        return head, None
-    if unit.dimension != expected.dimension:
-        at = table.at(field, head.start, max(len(head.unit), 1))
-        words = {"known": examples(expected), "suggestion": degrees(head.unit, expected)}
-        findings.add("LS422", at, name=head.name, text=head.unit, unit=column.unit, **words)
-        return head, None
-    if head.name == column.name and (hint := misfit(unit, expected)):
-        at = table.at(field, head.start, len(head.unit))
-        findings.add("LS423", at, text=head.unit, suggestion=hint)
-        return head, None
-    return head, unit
+    field, start = table.header[place], head.start
+    unit = read_unit_of(
+        head.unit, column, lambda first, length: table.at(field, start + first, length), findings, head.name
+    )
+    return head, unit and replace(unit, text=unit.text.strip() or "1")
 
 
 def _uncertainty(

@@ -12,6 +12,8 @@ from ..distribution import Error
 from ..quantity import Printed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ...derivations.unit_text import ParsedUnit
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
@@ -203,21 +205,27 @@ def read_value(
     return printed
 
 
-def read_unit_of(text: str, like: Declared, at: Location, findings: Findings) -> ParsedUnit | None:
-    """Read a unit of an input; None, with a finding, if it does not convert to that of its declaration."""
-    expected = parse_unit(like.unit)
+def read_unit_of(
+    text: str, like: Declared, place: Callable[[int, int], Location], findings: Findings, name: str = ""
+) -> ParsedUnit | None:
+    """Read a unit of an input; None, with a finding, if it does not convert to that of its declaration.
+
+    `place`: of a part of the text, by where it starts and how long it is. `name`: what is in the unit, if not
+    the input itself: its uncertainty, of which the unit may be one of differences.
+    """
+    expected, name = parse_unit(like.unit), name or like.name
     try:
         size = parse_unit(text)
     except UnitError as error:
-        words = {"text": error.text, "suggestion": error.suggestion, "known": examples(expected)}
-        findings.add(error.code, at, **words)
+        at, known = place(error.start, len(error.text)), examples(expected)
+        findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
         return None
+    at = place(0, max(len(text), 1))
     if size.dimension != expected.dimension:
-        words = {"name": like.name, "text": text, "unit": like.unit, "known": examples(expected)}
-        words["suggestion"] = degrees(text, expected)
-        findings.add("LS422", at, **words)
+        words = {"known": examples(expected), "suggestion": degrees(text, expected)}
+        findings.add("LS422", at, name=name, text=text, unit=like.unit, **words)
         return None
-    if hint := misfit(size, expected):
+    if name == like.name and (hint := misfit(size, expected)):
         findings.add("LS423", at, text=text, suggestion=hint)
         return None
     return size

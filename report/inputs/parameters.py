@@ -6,10 +6,10 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ...derivations.unit_text import ParsedUnit, UnitError, degrees, examples, is_pure, misfit, parse_unit
+from ...derivations.unit_text import ParsedUnit, examples, is_pure, parse_unit
 from ..messages.errors import Findings, Location
 from ..quantity import behind
-from .number_text import read_value
+from .number_text import read_unit_of, read_value
 from .stated import SHAPES, Conventions, Of, StatementError, read_statement
 
 if TYPE_CHECKING:
@@ -166,27 +166,13 @@ class _Reader:
             hint = f"a comma stands before what is stated: ', {joined[1]}'"
             self.findings.add("LS421", at, text=text, suggestion=hint, known=known)
             return None
-        try:
-            size = parse_unit(text or "1")
-        except UnitError as error:
-            at = self.part(start + error.start, len(error.text))
-            known = examples(self.expected)
-            self.findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
-            return None
-        if size.dimension == self.expected.dimension and (text or is_pure(self.parameter.unit)):
-            if hint := misfit(size, self.expected):
-                self.findings.add("LS423", self.part(start, len(text)), text=text, suggestion=hint)
-                return None
-            return size
-        name, wanted = self.parameter.name, self.parameter.unit
-        if text:
-            at, known = self.part(start, len(text)), examples(self.expected)
-            hint = degrees(text, self.expected)
-            self.findings.add("LS422", at, name=name, text=text, unit=wanted, known=known, suggestion=hint)
-        else:
-            example = f"{digits}{self.suffix}"
-            at = self.toml.value(*self.path)
-            self.findings.add("LS211", at, name=name, text=digits, unit=wanted, example=example)
+        if text or is_pure(self.parameter.unit):
+            return read_unit_of(
+                text or "1", self.parameter, lambda at, size: self.part(start + at, size), self.findings
+            )
+        name, wanted, example = self.parameter.name, self.parameter.unit, f"{digits}{self.suffix}"
+        at = self.toml.value(*self.path)
+        self.findings.add("LS211", at, name=name, text=digits, unit=wanted, example=example)
         return None
 
     @property

@@ -78,7 +78,7 @@ def read_numbers(text: str, option: str, mark: str, like: Declared, unit: str) -
             example = f"{number} {like.unit}"
             findings.add("LS211", at, name=like.name, text=number, unit=like.unit, example=example)
             continue
-        size = read_unit_of(own or common, like, at, findings)
+        size = read_unit_of(own or common, like, lambda *_, at=at: at, findings)
         value = read_value(number, size, like, _place(option, text, start, len(number)), findings)
         if value is not None:
             found.append(float(value.value))

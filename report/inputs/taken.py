@@ -156,7 +156,7 @@ def read_taken(
     found = read(file, toml.value(*path, "from"))
     if found is None:
         return None
-    unit = read_unit_of(str(said.get("unit", of.unit)), of, toml.value(*path, "unit"), findings)
+    unit = read_unit_of(str(said.get("unit", of.unit)), of, lambda *_: toml.value(*path, "unit"), findings)
     if unit is None:
         return None
     reader, where = _Reader(found, file, cell, of, unit, at, findings), toml.trace(*path)
