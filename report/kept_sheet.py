@@ -55,10 +55,7 @@ class _ToldLimit:
     mentioned: Mentioned
 
 
-_SAME = (
-    "name", "unit", "meaning", "latex", "display", "positive", "nonnegative", "exact", "is_u", "spare",
-    "source", "conditions",
-)  # fmt: skip
+_SAME = ("unit", "meaning", "latex", "display", "positive", "nonnegative", "exact", "is_u", "spare", "source")
 """What a column says, and what is told of it, alike."""
 
 
@@ -67,17 +64,8 @@ class _ToldColumn:
     """What a column says; `given` if it is, and of a root or a loop what there is to say of its cells."""
 
     name: str
+    same: dict[str, Any]
     axis: str | None
-    unit: str
-    meaning: str
-    latex: str
-    display: str
-    positive: bool
-    nonnegative: bool
-    exact: bool
-    is_u: bool
-    spare: bool
-    source: str
     conditions: tuple[str, ...]
     mentioned: Mentioned
     limits: tuple[_ToldLimit, ...]
@@ -224,8 +212,10 @@ def _column(
         for own in column.limits
     )
     return _ToldColumn(
-        **{name: getattr(column, name) for name in _SAME},
+        name=column.name,
+        same={name: getattr(column, name) for name in _SAME},
         axis=None if column.axis is None else column.axis.name,
+        conditions=column.conditions,
         mentioned=_mentioned(sheet, column),
         limits=tuple(limits),
         alongside=tuple(other.name for other in column.alongside),
@@ -273,10 +263,10 @@ class _Known:
             return self.declared()[told.name]
 
         limits = tuple(self.limit(each, n, whole) for n, each in enumerate(told.limits))
-        known: dict[str, Any] = {name: getattr(told, name) for name in (*_SAME, "mentioned")}
+        known = {**told.same, "name": told.name, "conditions": told.conditions}
         known |= {"axis": self.axes[told.axis] if told.axis else None, "limits": limits}
         known |= {"content": told.mentioned.content, "rule": self.rule(told, whole)}
-        known |= {"placed": told.placed}
+        known |= {"mentioned": told.mentioned, "placed": told.placed}
         known |= {"alongside": tuple(self.column(by_name[name], by_name) for name in told.alongside)}
         if not told.conditions:
             known["requires"] = ()
