@@ -106,10 +106,6 @@ def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None)
     return f"another processor rounds {found.noise} numbers otherwise"
 
 
-def _sha256(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
 def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str) -> Iterator[Check]:
     """A check for each name that there was or is."""
     if not then and now:
@@ -146,7 +142,7 @@ def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator
             )
         elif not _is_inside(out, file) or not file.is_file():
             yield Check("output", name, False, f"{name} is missing")
-        elif _sha256(file) != was:
+        elif hashlib.sha256(file.read_bytes()).hexdigest() != was:
             also = "" if again == was else "; built again it is another file than it was then, too"
             yield Check("output", name, False, f"{name} was changed after it was built{also}")
         elif again is None:

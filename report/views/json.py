@@ -158,10 +158,7 @@ def _influences(report: Report) -> form.Influences | UnsetType:
     found = report.uncertain().influence
     if found is None or not found.sources:
         return UNSET
-    files = "".join(
-        f"{name}\n{hashlib.sha256(content).hexdigest()}\n"
-        for name, content in sorted(report.inputs.files.items())
-    )
+    files = "".join(f"{name}\n{digest}\n" for name, digest in _hashes(report.inputs.files).items())
     return form.Influences(
         inputs=hashlib.sha256(files.encode()).hexdigest(),
         sources=[_error(source) for source in found.sources],
@@ -261,16 +258,12 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
     processor : str
         On which it ran.
     """
-
-    def hashes(files: Mapping[str, bytes]) -> dict[str, str]:
-        return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
-
     return text(
         Manifest(
             schema=SCHEMA,
             title=report.title,
-            inputs=hashes(report.inputs.files),
-            outputs=hashes(outputs),
+            inputs=_hashes(report.inputs.files),
+            outputs=_hashes(outputs),
             sources=dict(sources),
             versions=dict(report.versions),
             engines={agreement.engine: agreement.program for agreement in report.engines},
@@ -278,3 +271,7 @@ def manifest(report: Report, outputs: Mapping[str, bytes], sources: Mapping[str,
             values="as doubles compute them" if report.exactly is None else "correctly rounded",
         )
     )
+
+
+def _hashes(files: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
