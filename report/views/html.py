@@ -59,7 +59,7 @@ class HtmlWriter(Writer):
 
     @cached_property
     def _exponents(self) -> dict[str, Markup]:
-        return {name: mathml(latex) for name, latex in self.exponents().items()}
+        return {name: mathml(latex) for name, latex in self.exponents.items()}
 
     def unit(self, node: Unit) -> Markup:
         """A unit; nothing for a pure number."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
-from functools import cached_property
 from pathlib import Path
 
 from ...derivations.equation import Equation
@@ -60,13 +59,9 @@ class LatexWriter(Writer):
         plus = node.signed and not figure.negative and int(figure.whole + figure.fraction)
         return f"+{figure.plain}" if plus else figure.plain
 
-    @cached_property
-    def _exponents(self) -> dict[str, str]:
-        return self.exponents()
-
     def unit(self, node: Unit) -> Markup:
         """A unit; nothing for a pure number."""
-        return Markup("") if is_pure(node.unit) else unit_tex(node.unit, self._exponents)
+        return Markup("") if is_pure(node.unit) else unit_tex(node.unit, self.exponents)
 
     def label(self, label: str) -> str:
         """What a reference to an equation is called."""

@@ -91,6 +91,7 @@ class Writer(ABC):
             return self.escape(item.code if item.printed is None else item.printed)
         return self(Number(item.figure))
 
+    @cached_property
     def exponents(self) -> dict[str, str]:
         """LaTeX of the names that may stand in the exponent of a unit."""
         return {name: self.material.latex(name) for name in self.material.names}
