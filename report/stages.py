@@ -180,8 +180,6 @@ def _evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Repo
         exactly=exactly,
         shown={column.name: shown(column, sheet, inputs) for column in sheet.columns},
         algebra=ledger,
-        proofs=(),
-        errata=(),
         comparisons=compare(inputs.published, values, inputs.expected),
         plotted=cache(lambda: plotted(values, inputs)),
         uncertain=cache(lambda: uncertain(workbook, values, inputs)),

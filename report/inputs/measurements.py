@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import ParsedUnit, UnitError, is_pure, parse_unit
@@ -180,9 +179,9 @@ def read_measurements(
     measured: Sequence[Measured] | None,
     modes: Mapping[str, str],
     findings: Findings,
-    elsewhere: Collection[str] = (),
-    of: RowTable | None = None,
-    others: Mapping[str, str] = MappingProxyType({}),
+    elsewhere: Collection[str],
+    of: RowTable,
+    others: Mapping[str, str],
 ) -> Measurements | None:
     """Read the table of the tests; None, with findings, if something is wrong with it.
 
@@ -199,13 +198,12 @@ def read_measurements(
         Where findings go.
     elsewhere : collection of str
         The columns that are taken from other reports: they must not stand here.
-    of : RowTable or None
+    of : RowTable
         What the workbook says of its rows: what else the column of their numbers may be called (without it,
         they are numbered as they stand), which columns of words group them, how many there must be.
     others : mapping of str to str
         The columns of other tables, and where these stand: they are not looked for here.
     """
-    of = of or RowTable()
     before = len(findings.found)
     columns = {column.name: column for column in measured or () if column.name not in elsewhere}
     required = {"test": of.row, **{name: f"{name} [{column.unit}]" for name, column in columns.items()}}

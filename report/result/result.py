@@ -151,16 +151,16 @@ class Report:
     """By column name."""
     algebra: Callable[[], Ledger]
     """Returns the ledger."""
-    proofs: tuple[Proof, ...]
-    """One for each equation of the ledger, in its order."""
-    errata: tuple[Erratum, ...]
-    """Findings about the source's print, each made by a check."""
     comparisons: tuple[Comparison, ...]
     """In the order of published.csv."""
     plotted: Callable[[], Plotted]
     """Computes what charts ask for besides."""
     uncertain: Callable[[], Uncertainties]
     """Computes the standard uncertainties of the cells."""
+    proofs: tuple[Proof, ...] = ()
+    """One for each equation of the ledger, in its order."""
+    errata: tuple[Erratum, ...] = ()
+    """Findings about the source's print, each made by a check."""
     engines: tuple[Agreement, ...] = ()
     """What the judge of the engines found, NumPy first; empty if it was not asked."""
     oddities: tuple[Check, ...] = ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from .common import FINDINGS, OK, count, folder_argument, format_argument, keeping_arguments, studied, told
@@ -48,26 +49,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--R", metavar="R", help=said)
     said = "instead of the card, N impacts under it from the slowest to the fastest measured speed, as CSV"
     many = parser.add_mutually_exclusive_group()
-    many.add_argument("--sweep", metavar="N", type=_impacts, help=said)
+    many.add_argument("--sweep", metavar="N", type=partial(_impacts, least=2, most=MOST), help=said)
     said = (
         "instead of the card, time, approach, speed, force and energies of N impacts under it, one after the "
         "other in the same place, as CSV"
     )
-    many.add_argument("--course", metavar="N", type=_impacts_in_one_place, help=said)
+    one_place = partial(_impacts, least=1, most=MOST_IN_ONE_PLACE)
+    many.add_argument("--course", metavar="N", type=one_place, help=said)
     format_argument(parser, "text", "markdown", "json")
     keeping_arguments(parser)
 
 
-def _impacts(text: str, least: int = 2, most: int = MOST) -> int:
+def _impacts(text: str, least: int, most: int) -> int:
     """Read how many impacts there shall be, for argparse."""
     number = count(text)
     if not least <= number <= most:
         raise argparse.ArgumentTypeError(f"not from {least} to {most} impacts: '{text}'")
     return number
-
-
-def _impacts_in_one_place(text: str) -> int:
-    return _impacts(text, 1, MOST_IN_ONE_PLACE)
 
 
 def run(options: argparse.Namespace) -> int:
