@@ -83,14 +83,6 @@ class Material:
         (only,) = self.items(name)[1]
         return only
 
-    def count(self, axis: str) -> int:
-        """How many rows an axis has."""
-        return self.report.values.layouts[axis].size
-
-    def counted(self, name: str, axis: str) -> int:
-        """Over how many rows of an axis a column sums; rows without a value do not count."""
-        return self.report.values.rows_summed(name, axis)
-
     # --- marks
 
     def marked(self, name: str) -> tuple[MarkCount, ...]:

@@ -119,12 +119,13 @@ class Said:
 
     def _count(self, what: str) -> Inlines:
         """``tests``: how many there are; ``alpha_mean pairs``: over how many of them a column sums."""
+        values = self.report.values
         *column, axis = what.split()
-        _known("axis", axis, self.report.values.layouts)
+        _known("axis", axis, values.layouts)
         if not column:
-            return (Count(str(self.material.count(axis)), "count", axis),)
+            return (Count(str(values.layouts[axis].size), "count", axis),)
         name = self._column(column[0])
-        return (Count(str(self.material.counted(name, axis)), "count", axis, name),)
+        return (Count(str(values.rows_summed(name, axis)), "count", axis, name),)
 
     def _inside(self, name: str) -> Inlines:
         limited = self.report.marks.limited(self._column(name))
