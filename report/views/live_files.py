@@ -123,9 +123,7 @@ def _texts(report: Report, axis: Axis) -> dict[int, dict[str, str]]:
 
 def _decimal(value: Fraction) -> str:
     """A fraction that was a decimal number, as one again."""
-    places = 0
-    while (value * 10**places).denominator != 1 and places < 400:
-        places += 1
+    places = next((n for n in range(400) if (value * 10**n).denominator == 1), 400)
     digits = str(round(value * 10**places)).rjust(places + 1, "0")
     return f"{digits[:-places]}.{digits[-places:]}" if places else digits
 
