@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from loopsheet.report.result.findings import checks
 from loopsheet.report.result.verdict_words import claimed
 from loopsheet.report.study import Study
 
@@ -30,19 +32,43 @@ RUNS = "run,m [g],V [mL]\n1,10.2314,25.013\n2,10.3941,25.227\n3,10.1773,24.871\n
 STATED = '[uncertainty]\nm = "u = 0.01 g"\n'
 
 
-def said(folder: Path, f: str, b: str, published: str, more: str = "") -> list[str]:
+SCATTER = '''\
+from sympy import sqrt
+from loopsheet import Method, count, fit, let, mean, measured, unknown
+
+
+class Line(Method, source="own", rows="runs"):
+    """What scatters about a mean, and about a line."""
+
+    m = measured("g", "mass", positive=True)
+    V = measured("mL", "volume", positive=True)
+    V_m = let(mean(V), "mean volume", "mL")
+    s = let(sqrt(sum((V - V_m) ** 2) / (count(V) - 1)), "scatter", "mL")
+    u_m = let(s / sqrt(count(V)), "its uncertainty", "mL")
+    a, b = unknown("intercept", "mL"), unknown("slope", "mL/g")
+    line = fit(V, a + b * m)
+'''
+
+
+def judged(folder: Path, book: str, published: str, more: str) -> tuple[list[str], ...]:
     """What the referee holds for possible of a publication: the words of each explanation."""
-    (folder / "workbook.py").write_text(DENSITY, encoding="utf-8")
+    (folder / "workbook.py").write_text(book, encoding="utf-8")
     (folder / "measurements.csv").write_text(RUNS, encoding="utf-8")
     (folder / "published.csv").write_text(f"source,cell,index,value,unit\n{published}", encoding="utf-8")
     (folder / "report.toml").write_text(
-        f'workbook = "workbook.py"\n[parameters]\nf = "{f}"\nb = "{b}"\n'
-        f'[measurements]\nfile = "measurements.csv"\n{more}[published]\nfile = "published.csv"\n',
+        f'workbook = "workbook.py"\n{more}[measurements]\nfile = "measurements.csv"\n'
+        '[published]\nfile = "published.csv"\n',
         encoding="utf-8",
     )
     referee = Study(folder).report.referee
     found = referee.explanations if referee.asked_why else referee.slips
-    return [claimed(each.first) for each in found]
+    return tuple([claimed(change) for change in each.changes] for each in found)
+
+
+def said(folder: Path, f: str, b: str, published: str, more: str = "") -> list[str]:
+    """The first words of each, of a publication of contents."""
+    given = f'[parameters]\nf = "{f}"\nb = "{b}"\n'
+    return [first for first, *_ in judged(folder, DENSITY, published, more + given)]
 
 
 @pytest.mark.parametrize("more", ["", STATED])
@@ -80,3 +106,44 @@ def test_a_convention_is_told_in_its_own_unit(tmp_path: Path) -> None:
     content = "T,c,1,0.51131,g/mL\nT,c,2,0.51503,g/mL\nT,c,3,0.51150,g/mL\nT,c_m,,0.51261,g/mL\n"
     told = said(tmp_path, "1, exact", "0 g/mL, exact", content)
     assert told[:2] == ["L was 12.5, not 10", "L_0 was 8, not 10"]
+
+
+@pytest.mark.parametrize("more", ["", '[uncertainty]\nV = "u = 0.05 mL"\n'])
+def test_what_was_divided_by_n_stands_in_all_that_follows_from_it(more: str, tmp_path: Path) -> None:
+    """One cause, though two columns are off: s = 0.1786 mL and s/sqrt(3) are published as by n."""
+    content = "T,V_m,,25.0370,mL\nT,s,,0.1463,mL\nT,u_m,,0.0845,mL\n"
+    told = judged(tmp_path, SCATTER, content, more)
+    assert told[0] == [f"the numbers of {name} of T are to be multiplied by √(3/2)" for name in ("s", "u_m")]
+
+
+@pytest.mark.parametrize(("divisor", "factor"), [(3, "√(3/1)"), (2, "√(2/1)")])
+def test_the_scatter_about_a_fit_is_over_what_its_parameters_leave(
+    divisor: int, factor: str, tmp_path: Path
+) -> None:
+    m, V = np.array([[10.2314, 10.3941, 10.1773], [25.013, 25.227, 24.871]])
+    b, a = np.polyfit(m, V, 1)
+    s, root = (np.sum((V - a - b * m) ** 2) / divisor) ** 0.5, np.sum((m - m.mean()) ** 2) ** 0.5
+    content = f"T,a,,{a:.5f},mL\nT,b,,{b:.6f},mL/g\nT,line_s,,{s:.6f},mL\nT,s_b,,{s / root:.5f},mL/g\n"
+    told = judged(tmp_path, SCATTER, content, "")
+    assert told[0] == [
+        f"the numbers of {name} of T are to be multiplied by {factor}" for name in ("line_s", "s_b")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("published", "told"),
+    [
+        ("u(V_m),,0.0577,mL", "u(V_m) prints 0.0577, recomputed 0.0289, and 2 u would print so (differs)"),
+        ("u(V_m),,0.0566,mL", "u(V_m) prints 0.0566, recomputed 0.0289, and U would print so (differs)"),
+        (
+            '"U(V_m, k=2)",,0.0289,mL',
+            "U(V_m, k=2) prints 0.0289, recomputed 0.0577, and u would print so (differs)",
+        ),
+        ("u(V_m),,0.0433,mL", "u(V_m) prints 0.0433, recomputed 0.0289 (differs)"),
+    ],
+)
+def test_an_uncertainty_that_is_another_one(published: str, told: str, tmp_path: Path) -> None:
+    """u of one reading is 0.05 mL, of their mean 0.0289 mL; U is 1.96 times that."""
+    judged(tmp_path, SCATTER, f"T,{published}\n", '[uncertainty]\nV = "u = 0.05 mL"\n')
+    (found,) = (each for each in checks(Study(tmp_path).refereed) if each.kind == "published")
+    assert (found.passed, found.message) == (False, f"T {told}")

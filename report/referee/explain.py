@@ -97,6 +97,7 @@ def possibilities(problem: Problem) -> tuple[Explained, ...]:
         truncated_inputs,
         truncated_tables,
         neglected,
+        misplaced_together,
         slipped,
         exchanged_in_tables,
         exchanged_rows,

@@ -75,6 +75,10 @@ def _other(mode: str) -> str:
     return "rounded" if mode == "truncated" else "truncated"
 
 
+_Way = tuple[Change, tuple[Fraction, ...]]
+"""What is wrong with a published column, and by what it, or each of its cells, has to be multiplied."""
+
+
 @dataclass(frozen=True)
 class _Scale:
     """By what numbers may have to be multiplied."""
@@ -83,9 +87,18 @@ class _Scale:
     says: Change
     """That, of a column that it does not name."""
 
+    @property
+    def factors(self) -> tuple[Fraction, ...]:
+        """It is one for all cells."""
+        return (self.factor,)
+
     def column(self, cell: str, source: str) -> Change:
         """That of a column."""
         return replace(self.says, cell=cell, source=source)
+
+    def way(self, cell: str, source: str) -> _Way:
+        """That, and by what to multiply."""
+        return self.column(cell, source), self.factors
 
     def cell(self, cell: str, source: str, index: tuple[int, ...], of: Printed) -> Change:
         """That of a cell alone, as it would be printed."""
@@ -192,12 +205,8 @@ def misplaced_tables(search: Search) -> Iterator[Explained]:
     for (source, cell), members in search.groups.items():
         if search.worth(members):
             more = _OFTEN if len(members) > 1 else ()
-            for scale in (*_scales(problem.published[members[0]].printed), *more):
-                changed = _multiplied(problem, members, scale.factor)
-                tried.append((scale.column(cell, source), changed, problem.box))
-            for text, times in _of_counts(problem, members):
-                changed = _multiplied(problem, members, *times)
-                tried.append((Change("factor", cell, (), source, "", text), changed, problem.box))
+            ways = *_ways(problem, source, cell, members), *(each.way(cell, source) for each in more)
+            tried += ((change, _multiplied(problem, members, *by), problem.box) for change, by in ways)
         for n in members if len(members) > 1 else ():
             if search.worth([n]):
                 value = problem.published[n]
@@ -208,50 +217,75 @@ def misplaced_tables(search: Search) -> Iterator[Explained]:
 
 
 def misplaced_together(search: Search) -> Iterator[Explained]:
-    """Several published columns, each in another unit than is said: each as it is nearest to its cells."""
+    """Several published columns, each in another unit or by a factor: each as it is nearest to its cells."""
     problem, changes = search.problem, list[Change]()
     changed, cells = problem, problem.guessing.at(problem.box.start).cells
     for (source, cell), members in search.groups.items():
         with np.errstate(all="ignore"):
             times = cells[members] / problem.centre[members]
-        scales = _SAME, *_scales(problem.published[members[0]].printed)
-        scale = min(scales, key=lambda each: _off(times, each))
-        if scale is not _SAME:
-            changed = _multiplied(changed, members, scale.factor)
-            changes.append(scale.column(cell, source))
+        ways = _SAME.way(cell, source), *_ways(problem, source, cell, members)
+        change, by = min(ways, key=lambda way: _off(times, way[1]))
+        if by != _SAME.factors:
+            changed = _multiplied(changed, members, *by)
+            changes.append(change)
     if len(changes) > 1:
         yield from search.if_met(changes, changed)
 
 
-def _off(times: Array, scale: _Scale) -> float:
+def _off(times: Array, factors: Sequence[Fraction]) -> float:
     """How far numbers are from being multiplied so."""
-    found = float(np.abs(times / float(scale.factor) - 1).max())
+    found = float(np.abs(times / np.array(factors, dtype=float) - 1).max())
     return found if np.isfinite(found) else np.inf
 
 
-def _of_counts(problem: Problem, members: Sequence[int]) -> Iterator[tuple[str, list[Fraction]]]:
-    """What is off where a sum was divided by n in the place of n - 1, or the reverse; and its square root.
+def _ways(problem: Problem, source: str, cell: str, members: Sequence[int]) -> Iterator[_Way]:
+    """What may be wrong with a published column."""
+    for scale in _scales(problem.published[members[0]].printed):
+        yield scale.way(cell, source)
+    for numbers, wrong, right in _divisors(problem, members):
+        text = "/".join(_counted(numbers, less) for less in (wrong, right))
+        by = tuple(Fraction(number - wrong, number - right) for number in numbers)
+        yield Change("factor", cell, (), source, "", text), by
+        root = tuple(Fraction(math.sqrt(each)) for each in by)
+        yield Change("factor", cell, (), source, "", f"√({text})"), root
 
-    Of a published column: as it is said, and by what each of its cells has to be multiplied.
+
+def _divisors(problem: Problem, members: Sequence[int]) -> dict[tuple[tuple[int, ...], int, int], None]:
+    """By what a sum under a published column may have been divided that has other degrees of freedom.
+
+    The number of rows under each of its cells; how many fewer were counted, and are to be. Of a sum over rows
+    n stands for n - 1 or the reverse, of the scatter about a fit both for what its parameters leave.
     """
-    sheet, values = problem.campaign.sheet, problem.campaign.values
-    column = sheet[problem.published[members[0]].cell]
-    rows = [problem.places[n][1] for n in members]
-    counts = dict.fromkeys(
-        tuple(values.over(each.name, row, axis.name)[0] for row in rows)
-        for each in (column, *sheet.ancestors(column))
+    campaign = problem.campaign
+    column = campaign.sheet[problem.published[members[0]].cell]
+    under, rows = (column, *campaign.sheet.ancestors(column)), [problem.places[n][1] for n in members]
+    asked = [
+        (each.name, axis.name, pair)
+        for each in under
         if each.axis == column.axis
-        for axis in sheet.summed_axes(each)
+        for axis in campaign.sheet.summed_axes(each)
+        for pair in ((0, 1), (1, 0))
+    ]
+    names = {each.name for each in under}
+    asked += (
+        (curve.name, curve.axis, (less, len(curve.fitted)))
+        for curve in campaign.inputs.workbook.curves
+        if curve.scatter in names and campaign.sheet[curve.name].axis == column.axis
+        for less in (0, 1)
     )
-    for numbers in counts:
-        if min(numbers) > 1 and max(numbers) <= MOST_COUNTED:
-            n = "n" if len(set(numbers)) > 1 else str(numbers[0])
-            less = "(n - 1)" if n == "n" else str(numbers[0] - 1)
-            of = [Fraction(number, number - 1) for number in numbers]
-            yield f"{n}/{less}", of
-            yield f"{less}/{n}", [1 / each for each in of]
-            yield f"√({n}/{less})", [Fraction(math.sqrt(each)) for each in of]
-            yield f"√({less}/{n})", [Fraction(math.sqrt(1 / each)) for each in of]
+    found = dict[tuple[tuple[int, ...], int, int], None]()
+    for name, axis, (wrong, right) in asked:
+        numbers = tuple(campaign.values.over(name, row, axis)[0] for row in rows)
+        if wrong != right and max(wrong, right) < min(numbers) and max(numbers) <= MOST_COUNTED:
+            found[numbers, wrong, right] = None
+    return found
+
+
+def _counted(numbers: Sequence[int], less: int) -> str:
+    """So many fewer than the rows: a number if all cells have as many."""
+    if len(set(numbers)) == 1:
+        return str(numbers[0] - less)
+    return f"(n - {less})" if less else "n"
 
 
 def _multiplied(problem: Problem, members: Sequence[int], *times: Fraction) -> Problem:

@@ -15,7 +15,7 @@ from ..inputs.inputs import Inputs
 from ..result.result import Comparison
 from ..uncertainty.monte_carlo import draw
 from ..uncertainty.propagation import Spread
-from .comparison import beside, missing_as_expected
+from .comparison import beside, missing_as_expected, prints_same
 
 if TYPE_CHECKING:
     from ..inputs.published import PublishedValue
@@ -57,7 +57,18 @@ class _Asked:
         assert published.about is not None
         there = self.values.cell(published.about.cell, published.index)
         expected = missing_as_expected(there, self.values, self.inputs.expected)
-        return beside(published, self.cell(published), expected=expected)
+        found = beside(published, self.cell(published), expected=expected)
+        return replace(found, instead=self.instead(published)) if found.verdict == "differs" else found
+
+    def instead(self, published: PublishedValue) -> str:
+        """Which of u, U and 2 u prints as another of them was published; empty if none does."""
+        about = published.about
+        if about is None or about.other or about.kind not in ("u", "U"):
+            return ""
+        row = self.values.row(self.values.sheet[about.cell], published.index)
+        budget = self.spread.budget(about.cell, row, about.level)
+        others = {"U": budget.expanded, "2 u": 2 * budget.u} if about.kind == "u" else {"u": budget.u}
+        return next((each for each, u in others.items() if prints_same(u, published.printed)), "")
 
     def cell(self, published: PublishedValue) -> Cell:
         """What is computed, as a cell of its own name; without a value where the cell has none."""

@@ -118,11 +118,13 @@ def of_comparison(comparison: Comparison, name: str) -> Check:
 
 
 def _misplaced(comparison: Comparison) -> str:
-    """What one that is not as expected, and off by a power of ten or the zero of degC, may be due to."""
+    """What one that is not as expected may be due to: another uncertainty, a power of ten, a zero."""
     cell, printed = comparison.cell, comparison.published.printed
     if comparison.as_expected or cell.value is None or not printed.number:
         return ""
     here, there = printed.of(cell.value), float(printed.number)
+    if comparison.instead:
+        return f", and {comparison.instead} would print so"
     is_temperature = printed.unit in ("K", "degC", "°C")
     if is_temperature and abs(abs(here - there) - float(parse_unit("degC").zero)) < NEAR_THE_ZERO:
         return ", perhaps printed in K for degC, or the reverse"

@@ -97,6 +97,8 @@ class Comparison:
     finding."""
     refereed: Verdict | None = None
     """What the referee says of it; None if it was not asked."""
+    instead: str = ""
+    """Of an uncertainty that differs, the other one that prints so: ``U``, ``2 u``."""
 
     @property
     def as_expected(self) -> bool:

@@ -181,8 +181,12 @@ class Explanation:
 
     @property
     def count(self) -> int:
-        """How many printed numbers change; none, where only what is not printed is otherwise."""
-        return sum(change.count for change in self.changes)
+        """How many printed numbers change; none, where only what is not printed is otherwise.
+
+        Columns that are off by one factor have one cause.
+        """
+        alike = {change.would_print for change in self.changes if change.kind == "factor"}
+        return len(alike) + sum(change.count for change in self.changes if change.kind != "factor")
 
     @property
     def as_printed(self) -> bool:
