@@ -313,7 +313,11 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
     """A start has the unit that is sought; the sums of squares tell whether the model describes the rows."""
     rows = "1,1.0,2105(20)\n2,2.0,3120(30)\n3,3.5,4650(20)\n4,4.0,5090(40)\n5,5.0,6120(40)\n"
     write(tmp_path, WEIGHED, f"reading,x [s],y [mV]\n{rows}", '[uncertainty]\nx = "exact"\n')
-    assert main(["build", str(tmp_path), "--to", "html"]) == 0
+    assert main(["build", str(tmp_path), "--to", "html", "--out", str(tmp_path / "out")]) == 0
+    assert (
+        "Letters behind the number of a fit are this project’s"
+        in (tmp_path / "out" / "report.html").read_text()
+    )
     report = Study(tmp_path).report
     assert not report.faults
     time, size = np.array([1, 2, 3.5, 4, 5]), np.array([0.02, 0.03, 0.02, 0.04, 0.04])

@@ -436,6 +436,9 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "amended": Said.amended,
     "fits": lambda s: s.listed(s.fits().values()),
     "own_numbers": lambda s: any(equation.own for equation in s.material.equations),
+    "lettered": lambda s: any(
+        not s.report.sheet[curve.name].source.startswith("(L") for curve in s.report.workbook.curves
+    ),
     "ledger": lambda s: (s.tables.ledger(),) if s.material.equations else (),
     "claims": lambda s: tuple(map(s.claim, s.material.equations)),
     "put_in": lambda s: put_in(s.material),
