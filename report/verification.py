@@ -184,7 +184,7 @@ def _allowed(report: Report) -> dict[str, dict[Index, float]]:
 
 
 def _moves(found: Differences | None) -> Iterator[Check]:
-    from .views.differences import moved
+    from .views.differences import moved, reordered
 
     if found is None:
         return
@@ -202,6 +202,8 @@ def _moves(found: Differences | None) -> Iterator[Check]:
                 f"{change.name} was '{change.before or 'not there'}' and is '{change.after or 'not there'}'"
             )
             yield Check(kind, change.name, False, said)
+    for rows, said in zip(found.order, reordered(found), strict=True):
+        yield Check("order", rows, True, said, note="expected")
 
 
 def _verdict(

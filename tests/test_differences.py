@@ -7,14 +7,16 @@ import math
 import shutil
 import sys
 from pathlib import Path
+from typing import Any
 
+import grouped
 import pytest
 from msgspec.structs import replace
 
 from loopsheet.report.archive.differences import Differences, Move, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
-from loopsheet.report.files.values import Column, Oddity, Published, Result, Unit
+from loopsheet.report.files.values import Column, Conformity, Oddity, Published, Result, Unit
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
@@ -237,6 +239,154 @@ def test_a_number_that_moved_is_told_with_the_word_of_its_row() -> None:
     other = replace(after, words={"tests": {1: "oil C", 2: "oil B"}})
     assert "v[1] " in (told := as_text(compare(before, other), 20))
     assert "v[1] (" not in told
+
+
+PLACES = {1: "A", 2: "B", 3: "C"}
+TURNED = {1: "C", 2: "B", 3: "A"}
+
+
+def of_falls(words: dict[int, str], v: dict[str, float], **more: Any) -> Result:
+    """Falls that words tell apart, of which `v` is known."""
+    cells = {
+        "v": listed("m/s", "falls", "given", {(n,): v[word] for n, word in words.items()}),
+        "s": listed("m/s", "falls", "(1) s = v", {(n,): 10 * v[word] for n, word in words.items()}),
+        "m": M,
+    }
+    return replace(RESULT, cells=cells, words={"falls": words}, **{"published": [], **more})
+
+
+OF_FALLS = of_falls(PLACES, {"A": 1.0, "B": 2.0, "C": 3.0})
+
+
+def test_rows_in_another_order_are_the_same_rows() -> None:
+    """The word stands for the row: no number is another, and in one line it is told that the order is."""
+    after = of_falls(TURNED, {"A": 1.0, "B": 2.0, "C": 3.0})
+    found = compare(OF_FALLS, after)
+    assert (found.same, found.any, found.order) == (7, False, ("falls",))
+    assert as_text(found, 20) == (
+        "numbers    7 in both: 7 the same, 0 within rounding, 0 moved\n"
+        "order      the falls stand in another order: they are compared by their words\n"
+        "the same\n"
+    )
+    assert "\nthe falls stand in another order: they are compared by their words\n" in as_markdown(found, 20)
+
+
+def test_what_moved_of_rows_in_another_order_is_told_by_their_words() -> None:
+    before, after = OF_FALLS, of_falls(TURNED, {"A": 1.0, "B": 2.0, "C": 3.5})
+    surer = {
+        name: replace(after.cells[name], u=u) for name, u in (("v", [0.1, 0.2, 0.3]), ("s", [0.1, 0.2, 0.3]))
+    }
+    sure = {name: replace(before.cells[name], u=[0.4, 0.2, 0.1]) for name in surer}
+    before, after = (replace(r, cells=r.cells | u) for r, u in ((before, sure), (after, surer)))
+    found = compare(before, after)
+    assert [(move.named, move.before, move.after) for move in found.moved] == [
+        ("u(v[A])", 0.4, 0.3), ("v[C]", 3.0, 3.5), ("s[C]", 30.0, 35.0), ("u(s[A])", 0.4, 0.3),
+    ]  # fmt: skip
+    assert found.any
+    # What rounding may do is known of the rows as they stand now.
+    allowed = {"v": {(1,): 1.0}, "s": {(1,): 10.0}}
+    assert [move.named for move in compare(before, after, allowed).moved] == ["u(v[A])", "u(s[A])"]
+
+
+def test_a_row_above_leaves_the_others() -> None:
+    after = of_falls({1: "new", 2: "A", 3: "B", 4: "C"}, {"new": 9.0, "A": 1.0, "B": 2.0, "C": 3.0})
+    found = compare(OF_FALLS, after)
+    assert (found.moved, found.rows, found.order) == ((), (), ())
+    assert (found.added, found.removed) == (("v[new]", "s[new]"), ())
+    found = compare(after, OF_FALLS)
+    assert (found.moved, found.added, found.removed) == ((), (), ("v[new]", "s[new]"))
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ({1: "A", 2: "B", 3: "A"}, {1: "B", 2: "A", 3: "A"}),  # a word of two rows
+        ({1: "A", 2: "B", 3: "4"}, {1: "B", 2: "A", 3: "4"}),  # a number is that of a row
+        ({10: "A", 20: "B"}, {10: "B", 20: "A"}),  # numbers that somebody wrote
+        ({2: "A", 1: "B"}, {2: "B", 1: "A"}),
+    ],
+)
+def test_what_no_word_stands_for_alone_is_compared_by_number(
+    before: dict[int, str], after: dict[int, str]
+) -> None:
+    v = {"A": 1.0, "B": 2.0, "4": 3.0}
+    (one, other), found = list(before)[:2], compare(of_falls(before, v), of_falls(after, v))
+    assert [move.address for move in found.moved] == [f"v[{one}]", f"v[{other}]", f"s[{one}]", f"s[{other}]"]
+    assert {change.name for change in found.rows} == {f"falls {one}", f"falls {other}"}
+    assert found.order == ()
+
+
+def test_pairs_are_of_the_rows_that_words_stand_for() -> None:
+    def paired(result: Result, cells: dict[Index, float]) -> Result:
+        return replace(result, cells={**result.cells, "a": listed("1", "pairs", "(2) a = v", cells)})
+
+    v = {"new": 9.0, "A": 1.0, "B": 2.0, "C": 3.0}
+    before = paired(OF_FALLS, {(1, 2): 12.0, (1, 3): 13.0, (2, 3): 23.0})
+    above = of_falls({1: "new", 2: "A", 3: "B", 4: "C"}, v)
+    found = compare(before, paired(above, {(1, 2): 91.0, (2, 3): 12.0, (2, 4): 13.0, (3, 4): 24.0}))
+    assert [(move.named, move.before, move.after) for move in found.moved] == [("a[B-C]", 23.0, 24.0)]
+    assert found.added == ("v[new]", "s[new]", "a[new-A]")
+    # Of two tables nobody knows whose pairs they are.
+    two = {"w": listed("m", "others", "given", {(1,): 1.0})}
+    both = (replace(each, cells=each.cells | two) for each in (before, paired(above, {(1, 2): 12.0})))
+    assert compare(*both).removed == ("a[1-3]", "a[2-3]")
+
+
+def test_what_is_told_of_rows_in_another_order_is_told_by_their_words() -> None:
+    def told(words: dict[int, str], odd: tuple[int, int], out: int) -> Result:
+        cells = " and ".join(f"v[{n}] ({words[n]}) is odd" for n in odd)
+        decided = Conformity(cell=f"v[{out}]", limits="l", acceptance=(None, None), decision="conforms")
+        return of_falls(
+            words, {"A": 1.0, "B": 2.0, "C": 3.0},
+            published=[replace(PUBLISHED, cell="v", index=[out])],
+            published_u=[replace(PUBLISHED, cell="U95(s)", index=[out])],
+            conformity=[decided],
+            oddities=[
+                Oddity(kind="limit", name="v", word="warning", sentence=f"v: 2 of 3 falls: {cells}"),
+                Oddity(
+                    kind="left out", name=f"fall {out}", word="left out",
+                    sentence=f"fall {out} ({words[out]}), wet",
+                ),
+            ],
+        )  # fmt: skip
+
+    before = told(PLACES, (1, 2), 1)
+    assert not compare(before, told(TURNED, (2, 3), 3)).any
+    found = compare(before, told(TURNED, (1, 3), 1))
+    assert [change.name for change in found.published] == [
+        f"Table 2 {cell}" for cell in ("v[A]", "U95(s)[A]", "v[C]", "U95(s)[C]")
+    ]
+    assert [(change.name, change.before, change.after) for change in found.checks][:2] == [
+        (
+            "limit v",
+            "v: 2 of 3 falls: v[A] is odd and v[B] is odd",
+            "v: 2 of 3 falls: v[C] is odd and v[A] is odd",
+        ),
+        ("left out fall A", "fall A, wet", ""),
+    ]  # fmt: skip
+    assert "limits v[C]" in [change.name for change in found.checks]
+
+
+def test_groups_in_another_order_are_the_same_groups(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rows that keep their numbers stand the other way round, so that groups are numbered otherwise."""
+    stated = '[uncertainty]\ny = "u = 0.2 mm"\n[limits]\n"level[B]" = "<= 3 mm"\n'
+    folder = grouped.write(tmp_path / "instruments", more=stated)
+    assert main(["build", str(folder), "--to", "json", "--out", str(tmp_path / "before")]) == 0
+    table = folder / "measurements.csv"
+    head, *lines = table.read_text(encoding="utf-8").splitlines()
+    table.write_text("\n".join((head, *reversed(lines))), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["verify", str(tmp_path / "before"), str(folder), "--run-workbook"]) == 1
+    told = capsys.readouterr().out
+    assert "\norder      the instruments stand in another order: they are compared by their words\n" in told
+    assert "number     114 the same\n" in told
+    assert told.endswith("different: the input (measurements.csv) changed\n")
+    assert main(["build", str(folder), "--to", "json"]) == 0
+    capsys.readouterr()
+    assert main(["diff", str(tmp_path / "before"), str(folder)]) == 0
+    assert capsys.readouterr().out.endswith("0 moved\n" + told.splitlines()[-3] + "\nthe same\n")
 
 
 def test_another_warning_about_the_same_numbers_is_a_difference() -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from msgspec import UNSET
 
-from ..cells.address import address
+from ..axis import singular
+from ..cells.address import address, named
+from ..cells.address import word as is_word
 from ..files.form import Index
 from ..files.values import Column, Conformity, Result
 from ..quantity import behind
@@ -22,6 +26,8 @@ SURELY = 1e-6
 EPS = sys.float_info.epsilon
 Held = tuple[float | None, str]
 """A number in SI and a status."""
+PAIRS = "pairs"
+"""The index set whose rows are called by two numbers of others."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,7 @@ class Move:
     """A number that is another one."""
 
     address: str
-    """``alpha[1-2]``."""
+    """``alpha[1-2]``; ``x[W1]``, where rows are compared by word."""
     unit: str
     """In which people read it; in SI, if that tells none."""
     kind: str
@@ -97,10 +103,12 @@ class Differences:
     """Published values with another verdict."""
     checks: tuple[OtherChange, ...]
     """What is told of the data: decisions on conformity, marks, warnings, what is expected or left out."""
+    order: tuple[str, ...] = ()
+    """Index sets whose rows stand in another order, compared by word: nothing is another for that."""
 
     @property
     def any(self) -> bool:
-        """Whether they differ by more than rounding."""
+        """Whether they differ by more than rounding, and than the order of rows that words tell apart."""
         told = self.moved, self.method, self.added, self.removed, self.rows, self.published, self.checks
         return any(told)
 
@@ -117,9 +125,14 @@ def compare(
     to which engines are held, for a number whose condition is 1. Who knows the conditions of the cells
     says what is allowed.
 
-    `allowed` (mapping of column name to mapping of index to float): how much each cell may differ, in SI;
-    used where it is more. `names`: what they are called.
+    Rows are the same if they have the same number; or the same word, where words tell all rows of an index
+    set apart and their numbers only say how they stand.
+
+    `allowed` (mapping of column name to mapping of index to float): how much each cell of `after` may differ,
+    in SI; used where it is more. `names`: what they are called.
     """
+    by_word = _by_word(before, after)
+    first, last = (_Rows(each, _standing(each, by_word)) for each in (before, after))
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []
     headline, aside = after.headline or before.headline, {*before.aside, *after.aside}
@@ -133,36 +146,133 @@ def compare(
         elif name in headline:
             kind, rank = "result", (1, headline.index(name))
         there, words = new.cells, dict(before.known(name).items() & after.known(name).items())
+        places, u_before, u_after = last.places(name), old.uncertainties, new.uncertainties
         for index, was in old.cells.items():
-            if index not in there:
+            place = places.get(first.row(name, index))
+            if place is None:
                 continue
-            now, named, word = there[index], address(name, index), words.get(index, "")
+            now, cell = there[place], last.address(name, place)
+            word = words.get(index, "") if old.axis not in by_word else ""
             if was == now:
                 same += 1
-            elif _within(was, now, (allowed or {}).get(name, {}).get(index, 0.0)):
+            elif _within(was, now, (allowed or {}).get(name, {}).get(place, 0.0)):
                 noise += 1
             else:
-                moved.append(((0, *rank), _move(named, word, kind, new, was, now, False)))
-            if index in old.uncertainties and index in new.uncertainties:
-                surer = old.uncertainties[index], new.uncertainties[index]
+                moved.append(((0, *rank), _move(cell, word, kind, new, was, now, False)))
+            if index in u_before and place in u_after:
+                surer = u_before[index], u_after[place]
                 if _as_sure(*surer):
                     same += 1
                 else:
                     u_was, u_now = ((each, "not known") for each in surer)
-                    place = (int(kind == "moved"), *rank)
-                    moved.append((place, _move(f"u({named})", word, kind, new, u_was, u_now, True)))
+                    behind_all = (int(kind == "moved"), *rank)
+                    moved.append((behind_all, _move(f"u({cell})", word, kind, new, u_was, u_now, True)))
     return Differences(
         *names,
         same,
         noise,
         tuple(move for _, move in sorted(moved, key=lambda item: item[0])),
         (*_rules(before, after), *_changes(before.proofs, after.proofs)),
-        tuple(_only_in(after, before)),
-        tuple(_only_in(before, after)),
-        tuple(_changes(_called(before), _called(after))),
-        tuple(_changes(_verdicts(before), _verdicts(after))),
-        tuple(_changes(_checks(before), _checks(after))),
+        tuple(_only_in(last, first)),
+        tuple(_only_in(first, last)),
+        tuple(_changes(_called(first), _called(last))),
+        tuple(_changes(_verdicts(first), _verdicts(last))),
+        tuple(each for each in _changes(_checks(first), _checks(last)) if not by_word or _says_more(each)),
+        tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
     )
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """What tells the rows of a result apart: their numbers, or words that stand for them."""
+
+    result: Result
+    words: Mapping[str, Mapping[int, str]]
+    """By index set, of those that are compared by word."""
+
+    def row(self, name: str, index: Index) -> tuple[int | str, ...]:
+        """What a row has in common with the same one of another result."""
+        axis = self.result.cells[name].axis if name in self.result.cells else None
+        words = self.words.get(axis or "", {})
+        return tuple(words.get(number, number) for number in index)
+
+    def address(self, name: str, index: Index) -> str:
+        """A cell as both results call it: ``x[W1]``, ``alpha[W1-W3]``, ``v[2]``."""
+        return address(name, self.row(name, index))
+
+    def places(self, name: str) -> dict[tuple[int | str, ...], Index]:
+        """The indices of a column, by what its rows have in common with those of another result."""
+        return {self.row(name, index): index for index in self.result.cells[name].cells}
+
+    def told(self, sentence: str) -> str:
+        """A sentence with cells and rows as both results call them: ``fall S-17, outlier``."""
+        if not self.words:
+            return sentence
+        found = re.sub(r"\w+\[[0-9-]+\]", lambda cell: self.address(*named(cell[0])), sentence)
+        for axis in (axis for axis in self.words if axis != PAIRS):
+            row = re.escape(singular(axis))
+            found = re.sub(rf"\b({row}) ([0-9]{{1,9}})\b", partial(self._row, axis), found)
+        # Behind a word that stands for a number now, it stands a second time.
+        return re.sub(r"([^\s()\[\]][^()\[\]]{,200})(\]?) \(\1\)", r"\1\2", found)
+
+    def _row(self, axis: str, found: re.Match[str]) -> str:
+        return f"{found[1]} {self.words[axis].get(int(found[2]), found[2])}"
+
+
+def _words(result: Result, axis: str) -> dict[int, str]:
+    """What the rows of an index set are known by; a row that is left out may have no word."""
+    every = {} if result.words is UNSET else result.words
+    return {number: word for number, word in sorted(every.get(axis, {}).items()) if word}
+
+
+def _by_word(before: Result, after: Result) -> tuple[str, ...]:
+    """The index sets of which a word has another number since, and whose words stand for their rows."""
+    found = []
+    for axis in {} if before.words is UNSET else before.words:
+        since = {word: number for number, word in _words(after, axis).items()}
+        moved = any(since.get(word, number) != number for number, word in _words(before, axis).items())
+        if moved and _stand_for_rows(before, axis) and _stand_for_rows(after, axis):
+            found.append(axis)
+    return tuple(found)
+
+
+def _stand_for_rows(result: Result, axis: str) -> bool:
+    """Whether every row has a word of its own, and a number that only says where it stands.
+
+    Other numbers were written by somebody: they are names, too.
+    """
+    words, every = _words(result, axis), {} if result.words is UNSET else result.words
+    numbers = {*every.get(axis, {})}
+    rows = next(([*column.cells] for column in result.cells.values() if column.axis == axis), [])
+    return (
+        numbers == {*range(1, len(numbers) + 1)}
+        and rows == sorted(rows)
+        and {*rows} <= {(number,) for number in words}
+        and len({*words.values()}) == len(words)
+        and all(map(is_word, words.values()))
+    )
+
+
+def _standing(result: Result, axes: tuple[str, ...]) -> dict[str, dict[int, str]]:
+    """The words that stand for numbers of rows, by index set; for both of a pair's, if there is one table."""
+    found = {axis: _words(result, axis) for axis in axes}
+    tables = {column.axis for column in result.cells.values() if column.axis and column.rule == "given"}
+    if len(tables) == 1 and tables <= found.keys():
+        found[PAIRS] = found[tables.pop()]
+    return found
+
+
+def _reordered(before: Mapping[int, str], after: Mapping[int, str]) -> bool:
+    """Whether words that are in both stand in another order."""
+    both = {*before.values()} & {*after.values()}
+    old, new = ([word for word in words.values() if word in both] for words in (before, after))
+    return old != new
+
+
+def _says_more(change: OtherChange) -> bool:
+    """Whether it is more than another order of what is told."""
+    before, after = (sorted(re.split("[,;:] | and ", each)) for each in (change.before, change.after))
+    return before != after
 
 
 def _move(named: str, word: str, kind: str, column: Column, was: Held, now: Held, is_u: bool) -> Move:
@@ -205,26 +315,34 @@ def _method(column: Column) -> str:
     return f"{column.rule or 'not told'} [{column.unit}]{over}"
 
 
-def _called(result: Result) -> dict[str, str]:
-    """The word of each row that has one, as ``samples 2``."""
-    every = {} if result.words is UNSET else result.words
-    return {f"{axis} {number}": word for axis, words in every.items() for number, word in words.items()}
-
-
-def _verdicts(result: Result) -> dict[str, str]:
-    """Of each published value, as ``Table 2 alpha[1-2]``, what it prints and the verdict on it."""
+def _called(rows: _Rows) -> dict[str, str]:
+    """The word of each row that has one and is known by its number, as ``samples 2``."""
+    every = {} if rows.result.words is UNSET else rows.result.words
     return {
-        f"{each.source} {address(each.cell, each.index)}": f"{each.printed}: {each.verdict}"
-        for each in (*result.published, *(() if result.published_u is UNSET else result.published_u))
+        f"{axis} {number}": word
+        for axis, words in every.items()
+        if axis not in rows.words
+        for number, word in words.items()
     }
 
 
-def _checks(result: Result) -> dict[str, str]:
+def _verdicts(rows: _Rows) -> dict[str, str]:
+    """Of each published value, as ``Table 2 alpha[1-2]``, what it prints and the verdict on it."""
+    every = (*rows.result.published, *(rows.result.published_u or ()))
+    known = (rows.row(re.sub(r".*\(|[,)].*", "", each.cell), tuple(each.index)) for each in every)
+    return {
+        f"{each.source} {address(each.cell, row)}": f"{each.printed}: {each.verdict}"
+        for each, row in zip(every, known, strict=True)
+    }
+
+
+def _checks(rows: _Rows) -> dict[str, str]:
     """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision."""
-    told = {f"{each.kind} {each.name}": each.sentence for each in result.oddities}
+    result = rows.result
+    told = {f"{each.kind} {rows.told(each.name)}": rows.told(each.sentence) for each in result.oddities}
     decided = () if result.conformity is UNSET else result.conformity
     return told | {
-        f"limits {each.cell}": f"{each.limits}: {_decision(each, result.cells[each.column])}"
+        f"limits {rows.told(each.cell)}": f"{each.limits}: {_decision(each, result.cells[each.column])}"
         for each in decided
     }
 
@@ -246,13 +364,13 @@ def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherC
     return [change for change in pairs if change.before != change.after]
 
 
-def _only_in(one: Result, other: Result) -> list[str]:
+def _only_in(one: _Rows, other: _Rows) -> list[str]:
     """Columns, and rows of columns that both have; one name for rows that all columns of an axis gain."""
     found = []
-    for name, column in one.cells.items():
-        if name not in other.cells:
+    for name in one.result.cells:
+        if name not in other.result.cells:
             found.append(name)
             continue
-        there = other.cells[name].cells
-        found += [address(name, index) for index in column.cells if index not in there]
+        there = other.places(name)
+        found += [one.address(name, index) for row, index in one.places(name).items() if row not in there]
     return found

@@ -10,12 +10,12 @@ __all__ = ["address", "index_text", "named", "parts", "word"]
 _ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
 
 
-def index_text(index: Sequence[int]) -> str:
-    """The row of a cell: ``2``, ``1-2``, empty for a scalar."""
+def index_text(index: Sequence[int | str]) -> str:
+    """The row of a cell: ``2``, ``1-2``, empty for a scalar; a word stands for its number."""
     return "-".join(map(str, index))
 
 
-def address(name: str, index: Sequence[int]) -> str:
+def address(name: str, index: Sequence[int | str]) -> str:
     """A cell: its column and its row.
 
     >>> address("alpha", (1, 2)), address("alpha_mean", ())

@@ -45,10 +45,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(found: Verification, most: int) -> None:
-    """One line for what is the same of a kind, one for each of what is not."""
+    """One line for what is the same of a kind, one for each of what is not, or is worth a word."""
     for kind in dict.fromkeys(check.kind for check in found.checks):
         own = [check for check in found.checks if check.kind == kind]
-        told = [check.sentence for check in own if not check.passed or check.skipped]
+        told = [check.sentence for check in own if check.word or check.skipped]
         if len(own) > len(told):
             print(f"{kind:10} {len(own) - len(told)} the same")
         for sentence in told[:most]:

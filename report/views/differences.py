@@ -11,7 +11,7 @@ from ..messages.diagnostics import visible
 from ..quantity import behind
 from . import markdown as md
 
-__all__ = ["FORMATS", "as_markdown", "as_text", "moved"]
+__all__ = ["FORMATS", "as_markdown", "as_text", "moved", "reordered"]
 
 _WIDTH = 16
 """Characters of a name at least, so that values stand below each other."""
@@ -36,6 +36,7 @@ def as_text(found: Differences, most: int) -> str:
     for word, names in (("added", found.added), ("removed", found.removed)):
         lines += [f"{word:10} {', '.join(names[:most])}"] if names else []
         lines += _rest(names, most)
+    lines += [f"{'order':10} {told}" for told in reordered(found)]
     lines.append(_verdict(found))
     return "".join(f"{visible(line)}\n" for line in lines)
 
@@ -47,6 +48,11 @@ def _others(found: Differences) -> tuple[tuple[str, Sequence[OtherChange]], ...]
         ("published", found.published),
         ("check", found.checks),
     )
+
+
+def reordered(found: Differences) -> list[str]:
+    """A sentence for each index set whose rows stand in another order."""
+    return [f"the {rows} stand in another order: they are compared by their words" for rows in found.order]
 
 
 def _count(found: Differences) -> str:
@@ -124,7 +130,7 @@ def as_markdown(found: Differences, most: int) -> str:
         text += _section([word, "before", "after"], rows, [change.name for change in changes], most)
     for word, names in (("added", found.added), ("removed", found.removed)):
         text += _section([word], ([md.code(name)] for name in names[:most]), names, most)
-    return text
+    return text + "".join(f"\n{md.cell(told)}\n" for told in reordered(found))
 
 
 def _section(header: Sequence[str], rows: Iterable[Sequence[str]], names: Sequence[str], most: int) -> str:
