@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -11,12 +12,13 @@ from typing import Any
 
 import grouped
 import pytest
+from msgspec import UNSET
 from msgspec.structs import replace
 
 from loopsheet.report.archive.differences import Differences, Move, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
-from loopsheet.report.files.values import Column, Conformity, Oddity, Published, Result, Unit
+from loopsheet.report.files.values import Column, Conformity, Oddity, Published, Result, Unit, read_result
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
@@ -425,14 +427,48 @@ def test_a_limit_that_was_moved_is_a_difference(tmp_path: Path, capsys: pytest.C
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "narrow")]) == 1
     told = capsys.readouterr().out
     assert "0 moved" in told
-    assert "check      limits l: 50.0007 to 50.0010 mm: conforms, accepted from 50.0007 to 50.001 mm" in told
-    assert "-> 50.0007 to 50.0008 mm: does not conform" in told
+    assert "check      limits l: 50.0007 to 50.0010 mm: conforms\n" in told
+    assert "-> 50.0007 to 50.0008 mm: does not conform\n" in told
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
     assert capsys.readouterr().err == ""
     with (tmp_path / "wide" / "report.toml").open("a") as file:
         file.write("# another day\n")
     assert main(["diff", str(tmp_path / "wide"), str(tmp_path / "wide")]) == 0
     assert "wide/out is older than what it was built from, report.toml" in capsys.readouterr().err
+
+
+def test_acceptance_limits_are_others_if_they_print_otherwise(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As the report tells them, with the digits of the guard band."""
+    folder = shutil.copytree(PAPER.parent / "gum_h1", tmp_path / "gauge")
+    with (folder / "report.toml").open("a") as file:
+        file.write('\n[limits]\nl = "50.0005 .. 50.0012 mm, guard = U"\n')
+    assert main(["build", str(folder), "--to", "json"]) == 0
+    capsys.readouterr()
+    assert main(["budget", "l", str(folder)]) == 0
+    budget = capsys.readouterr().out
+    built = read_result(folder / "out" / "values.json")
+    (decided,) = built.conformity or ()
+    assert re.fullmatch(r"50\.000\d{3} to 50\.001\d{3}", within := str(decided.accepted))
+    assert f"acceptance limits {within} mm\n" in budget
+
+    def told(one: Conformity, other: Conformity) -> list[tuple[str, ...]]:
+        results = (replace(built, conformity=[each]) for each in (one, other))
+        return [(change.name, change.before, change.after) for change in compare(*results).checks]
+
+    low, high = decided.acceptance
+    assert low is not None
+    assert told(decided, replace(decided, acceptance=(low * (1 + 1e-10), high))) == []
+    limits = "50.0005 to 50.0012 mm: conforms"
+    assert told(decided, replace(decided, accepted="50.0006 to 50.0011")) == [
+        (
+            "limits l",
+            f"{limits}, acceptance limits {within} mm",
+            f"{limits}, acceptance limits 50.0006 to 50.0011 mm",
+        )
+    ]
+    assert told(decided, replace(decided, accepted=UNSET)) == []  # a file of before does not tell them
 
 
 def test_markdown_has_a_table_for_each_kind_and_no_live_text() -> None:

@@ -131,8 +131,10 @@ def compare(
     `allowed` (mapping of column name to mapping of index to float): how much each cell of `after` may differ,
     in SI; used where it is more. `names`: what they are called.
     """
+    accepted = all(each.accepted is not UNSET for one in (before, after) for each in one.conformity or ())
     by_word = _by_word(before, after)
     first, last = (_Rows(each, _standing(each, by_word)) for each in (before, after))
+    checks = _changes(_checks(first, accepted), _checks(last, accepted))
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []
     headline, aside = after.headline or before.headline, {*before.aside, *after.aside}
@@ -177,7 +179,7 @@ def compare(
         tuple(_only_in(first, last)),
         tuple(_changes(_called(first), _called(last))),
         tuple(_changes(_verdicts(first), _verdicts(last))),
-        tuple(each for each in _changes(_checks(first), _checks(last)) if not by_word or _says_more(each)),
+        tuple(change for change in checks if not by_word or _says_more(change)),
         tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
     )
 
@@ -336,26 +338,23 @@ def _verdicts(rows: _Rows) -> dict[str, str]:
     }
 
 
-def _checks(rows: _Rows) -> dict[str, str]:
-    """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision."""
+def _checks(rows: _Rows, accepted: bool) -> dict[str, str]:
+    """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision.
+
+    `accepted`: whether acceptance limits belong to it, which files of before do not tell as they are read.
+    """
     result = rows.result
     told = {f"{each.kind} {rows.told(each.name)}": rows.told(each.sentence) for each in result.oddities}
-    decided = () if result.conformity is UNSET else result.conformity
-    return told | {
-        f"limits {rows.told(each.cell)}": f"{each.limits}: {_decision(each, result.cells[each.column])}"
-        for each in decided
-    }
+    for each in result.conformity or ():
+        within = _within_which(each, result.cells[each.column]) if accepted else ""
+        told[f"limits {rows.told(each.cell)}"] = f"{each.limits}: {each.decision}{within}"
+    return told
 
 
-def _decision(found: Conformity, column: Column) -> str:
-    unit, ends = column.unit, found.acceptance
-    if column.shown is not UNSET:
-        unit, ends = column.shown.text, (column.shown.of(ends[0]), column.shown.of(ends[1]))
-    return f"{found.decision}, accepted from {' to '.join(map(_end, ends))}" + behind(unit)
-
-
-def _end(value: float | None) -> str:
-    return "..." if value is None else f"{value:.12g}"
+def _within_which(found: Conformity, column: Column) -> str:
+    """The acceptance limits, as the report tells them."""
+    unit = column.unit if column.shown is UNSET else column.shown.text
+    return f", acceptance limits {found.accepted}{behind(unit)}" if found.accepted else ""
 
 
 def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherChange]:

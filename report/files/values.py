@@ -184,6 +184,9 @@ class Conformity(Form, frozen=True, kw_only=True):
         The tolerance limits as they are stated.
     acceptance : two numbers or null
         Between which it is accepted, in SI; null for an end that there is none of, or that is not known.
+    accepted : str
+        The same as people read it, in the unit that its column is shown in, with the digits that the guard
+        band has; empty without one, where it is not known, and where nothing is accepted.
     probability : number or null
         That the quantity lies within the tolerance limits; null where no distribution is known.
     decision : str
@@ -192,6 +195,7 @@ class Conformity(Form, frozen=True, kw_only=True):
     cell: Text
     limits: Text
     acceptance: tuple[Number, Number]
+    accepted: Text | UnsetType = UNSET
     probability: Number = None
     decision: Text
 

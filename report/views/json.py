@@ -20,6 +20,7 @@ from ..files.manifest import Manifest
 from ..machine.staging import put
 from ..messages.diagnostics import Check
 from ..result import verdict_data
+from ..result.conformity import accepted
 from ..result.result import Comparison, Report
 from ..result.uncertain import Conformity, ErrorSource
 from ..result.verdict import Verdict
@@ -54,7 +55,7 @@ def values(report: Report) -> str:
             }
             or UNSET,
             oddities=oddities(report.oddities),
-            conformity=[_decided(each) for each in report.uncertain().conformities] or UNSET,
+            conformity=[_decided(report, each) for each in report.uncertain().conformities] or UNSET,
             proofs=proof_statuses(report),
             rests_on=proof_grounds(report),
             errata=[alike(erratum, form.Erratum) for erratum in report.errata],
@@ -75,12 +76,13 @@ def oddities(checks: Iterable[Check]) -> list[form.Oddity]:
     ]
 
 
-def _decided(found: Conformity) -> form.Conformity:
+def _decided(report: Report, found: Conformity) -> form.Conformity:
     low, high = (float(end) if math.isfinite(end) else None for end in found.acceptance)
     return form.Conformity(
         cell=found.budget.cell,
         limits=str(found.limits),
         acceptance=(low, high),
+        accepted=accepted(report, found) if found.guard > 0 else "",
         probability=None if math.isnan(found.probability) else float(found.probability),
         decision=found.decision.value,
     )
