@@ -7,7 +7,6 @@ import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 
 from msgspec import UNSET
 
@@ -26,6 +25,7 @@ SURELY = 1e-6
 EPS = sys.float_info.epsilon
 Held = tuple[float | None, str]
 """A number in SI and a status."""
+_CELL = re.compile(r"\w+\[[0-9-]+\]")
 PAIRS = "pairs"
 """The index set whose rows are called by two numbers of others."""
 
@@ -134,7 +134,6 @@ def compare(
     accepted = all(each.accepted is not UNSET for one in (before, after) for each in one.conformity or ())
     by_word = _by_word(before, after)
     first, last = (_Rows(each, _standing(each, by_word)) for each in (before, after))
-    checks = _changes(_checks(first, accepted), _checks(last, accepted))
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []
     headline, aside = after.headline or before.headline, {*before.aside, *after.aside}
@@ -179,7 +178,7 @@ def compare(
         tuple(_only_in(first, last)),
         tuple(_changes(_called(first), _called(last))),
         tuple(_changes(_verdicts(first), _verdicts(last))),
-        tuple(change for change in checks if not by_word or _says_more(change)),
+        tuple(_changes(_checks(first, accepted), _checks(last, accepted))),
         tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
     )
 
@@ -206,19 +205,13 @@ class _Rows:
         """The indices of a column, by what its rows have in common with those of another result."""
         return {self.row(name, index): index for index in self.result.cells[name].cells}
 
-    def told(self, sentence: str) -> str:
-        """A sentence with cells and rows as both results call them: ``fall S-17, outlier``."""
-        if not self.words:
-            return sentence
-        found = re.sub(r"\w+\[[0-9-]+\]", lambda cell: self.address(*named(cell[0])), sentence)
-        for axis in (axis for axis in self.words if axis != PAIRS):
-            row = re.escape(singular(axis))
-            found = re.sub(rf"\b({row}) ([0-9]{{1,9}})\b", partial(self._row, axis), found)
-        # Behind a word that stands for a number now, it stands a second time.
-        return re.sub(r"([^\s()\[\]][^()\[\]]{,200})(\]?) \(\1\)", r"\1\2", found)
-
-    def _row(self, axis: str, found: re.Match[str]) -> str:
-        return f"{found[1]} {self.words[axis].get(int(found[2]), found[2])}"
+    def called(self, name: str) -> str:
+        """What a check is about, a cell or ``fall 2``, as both results call it: ``v[S-1]``, ``fall S-1``."""
+        rows, _, number = name.rpartition(" ")
+        axis = next((axis for axis in self.words if axis != PAIRS and singular(axis) == rows), None)
+        if axis is not None and number.isdecimal():
+            return f"{rows} {self.words[axis].get(int(number), number)}"
+        return self.address(*named(name)) if _CELL.fullmatch(name) else name
 
 
 def _words(result: Result, axis: str) -> dict[int, str]:
@@ -269,12 +262,6 @@ def _reordered(before: Mapping[int, str], after: Mapping[int, str]) -> bool:
     both = {*before.values()} & {*after.values()}
     old, new = ([word for word in words.values() if word in both] for words in (before, after))
     return old != new
-
-
-def _says_more(change: OtherChange) -> bool:
-    """Whether it is more than another order of what is told."""
-    before, after = (sorted(re.split("[,;:] | and ", each)) for each in (change.before, change.after))
-    return before != after
 
 
 def _move(named: str, word: str, kind: str, column: Column, was: Held, now: Held, is_u: bool) -> Move:
@@ -341,13 +328,18 @@ def _verdicts(rows: _Rows) -> dict[str, str]:
 def _checks(rows: _Rows, accepted: bool) -> dict[str, str]:
     """Of each check that found something, as ``limit alpha``, what it told; of each limit, the decision.
 
+    Of rows in another order only that it told something: its sentence names and counts them as they stand.
+
     `accepted`: whether acceptance limits belong to it, which files of before do not tell as they are read.
     """
     result = rows.result
-    told = {f"{each.kind} {rows.told(each.name)}": rows.told(each.sentence) for each in result.oddities}
+    told = {
+        f"{each.kind} {rows.called(each.name)}": each.word if rows.words else each.sentence
+        for each in result.oddities
+    }
     for each in result.conformity or ():
         within = _within_which(each, result.cells[each.column]) if accepted else ""
-        told[f"limits {rows.told(each.cell)}"] = f"{each.limits}: {each.decision}{within}"
+        told[f"limits {rows.called(each.cell)}"] = f"{each.limits}: {each.decision}{within}"
     return told
 
 
