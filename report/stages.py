@@ -312,7 +312,7 @@ def compared(report: Report) -> Report:
     from . import referee
     from .referee.uncertain import compare_uncertainties
 
-    inputs = load(report.inputs.folder, find_workbook)
+    inputs = Prepared(load(report.inputs.folder, find_workbook), report.sheet).check_cells()
     beside = referee.compare(inputs.published, report.values, inputs.expected)
     comparisons = referee.refereed(beside, report.referee)
     again = replace(report, inputs=inputs, comparisons=comparisons)
