@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from typing import Any
 
 from ..cells.grid import BUDGETS, LONGEST, CellBlock, Grid, Product, checked, factors, letters
@@ -175,11 +175,22 @@ class _Written:
             form = style("number", as_printed(report, block, cell))
             style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), form)
         style.text(sheet, row, 2, block.unit, "unit")
-        style.text(sheet, row, 4, source.shape.value, "chosen")
-        dof, size, number = min(source.dof, _UNLIMITED), self.size(row, each), ""
+        dof, size, number, shape = min(source.dof, _UNLIMITED), self.size(row, each), "", source.shape.value
         if source.said == SCATTER:
-            size, number = (f"{what}({self.readings(source)})" for what in ("=STDEV", "=COUNT"))
-        self.number(row, 5, number and f"{number}-1", dof, _DOF)
+            size, number = (f"={what}({self.readings(source)})" for what in ("STDEV", "COUNT"))
+            number += "-1"
+        if source.said == SCATTER and source.u and source.shape is not Shape.STUDENT:
+            # Of readings that are all the same the digits leave more, as long as they are.
+            none = f"{size}=0"
+            size, number = (
+                f"=IF({none[1:]},{source.u / scale!r},{size[1:]})",
+                f"=IF({none[1:]},{dof!r},{number[1:]})",
+            )
+            kind = f'=IF({none[1:]},"{shape}","{Shape.STUDENT}")'
+            style.formula(sheet, row, 4, kind, shape, style("chosen"))
+        else:
+            style.text(sheet, row, 4, shape, "chosen")
+        self.number(row, 5, number, dof, _DOF)
         contribution = each.u / self.scale
         if source.u:
             u = source.u / scale
@@ -388,7 +399,7 @@ class _Written:
         if budget.draws:
             return factor, f'"{budget.shape}"'
         named = self.by_shape(own, at, SHAPES, plain)
-        if budget.shape is Shape.CONVOLVED:
+        if self.is_joint(budget):
             named = f'IF({self.unmoved(at)},"{budget.shape}",{named})'
         return factor, named
 
@@ -439,9 +450,15 @@ class _Written:
         if budget.law and budget.shape.value not in factors:
             factors[budget.shape.value] = as_issued(p, budget.level, budget.factor)
         told = self.by_shape(own, at, factors, otherwise)
-        if budget.shape is Shape.CONVOLVED:
+        if self.is_joint(budget):
             return f"IF({self.unmoved(at)},{factors[budget.shape.value]},{told})"
         return told
+
+    @staticmethod
+    def is_joint(budget: Budget) -> bool:
+        """Whether its distribution is that of several sources: of a sum, or of one table of draws."""
+        tables = [each.source.table for each in budget.contributions if each.source.table]
+        return not budget.draws and (budget.shape is Shape.CONVOLVED or len(tables) > len({*tables}))
 
     def by_shape(self, own: str, at: Mapping[str, str], formulas: Mapping[str, str], otherwise: str) -> str:
         """The formula of the shape of a source that dominates; another one if none does."""
@@ -452,6 +469,12 @@ class _Written:
             told = f'IF({shape}="{name}",{formula},{told})'
         # Where nothing is of first order there is no line to look at.
         dominant = f"IF({sure}>{MOST_DOF},{told},{otherwise})"
+        named = dict.fromkeys(chain.from_iterable(self.correlations))
+        own_sources = enumerate((line.source for line in self.lines), start=1)
+        tied = [n for n, source in own_sources if source.name in named and not source.table]
+        if tied and not self.budget.second:  # correlated errors are taken as normal
+            those = ",".join(map(str, tied))
+            dominant = f"IF(ISNUMBER(MATCH({place},{{{those}}},0)),{otherwise},{dominant})"
         return (
             f"IF({at['largest']}=0,{otherwise},"
             f"IF({at['others']}<={DOMINANT}*{at['largest']},{dominant},{otherwise}))"
