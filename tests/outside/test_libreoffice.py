@@ -85,9 +85,6 @@ class Office:
         (short / "report.toml").write_text(
             text.replace("[measurements]", 'points_per_pair = "5"\n[measurements]')
         )
-        few = spreadsheets.folder_with(
-            folder / "few", [(2.2, 0.535, 22.58), (3.1, 0.505, 31.92), (4.3, 0.47, 44.61)]
-        )
         units = spreadsheets.folder_with(
             folder / "units", [(7.92, 53.5, 22.58), (11.16, 50.5, 31.92), (15.48, 47.0, 44.61)],
             'points_per_pair = "10"\n', "test,v [km/h],e [%],x_p [um]",
@@ -99,17 +96,14 @@ class Office:
         self.delivered = {
             **dict.fromkeys((*EDITS, "steps"), spreadsheets.deliver(short)),
             **dict.fromkeys(("as issued", "one character"), self.paper),
-            **dict.fromkeys(PASTED, spreadsheets.deliver(units)),
-            **{
-                name: spreadsheets.deliver(path)
-                for name, path in (("three tests", few), ("twelve tests", many))
-            },
+            **dict.fromkeys((*PASTED, "three tests"), spreadsheets.deliver(units)),
+            "twelve tests": spreadsheets.deliver(many),
         }
         self.edits = {
             **EDITS,
             **PASTED,
             "steps": ROOTS,
-            "three tests": {("e", 1): 0.5},
+            "three tests": {("e", 1): 50.0},
             "twelve tests": {("x_p", 4): 36.1},
         }
         books = {name: self.delivered[name].edited(edits) for name, edits in self.edits.items()}
