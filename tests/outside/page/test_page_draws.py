@@ -41,7 +41,7 @@ def draws_at_once() -> bool:
 
 
 def drawn(
-    report: Report, name: str, label: tuple[int, ...] = (), size: int = 100_000
+    report: Report, name: str, label: tuple[int, ...] = (), size: int = 20_000
 ) -> np.ndarray[Any, Any]:
     """As many draws of a cell as NumPy makes; NaN where it has no value."""
     draws = _Draws(report.inputs, report.values, name, seed=2)
