@@ -350,6 +350,7 @@ def test_edits_of_an_older_issue_stay_where_they_are(open_page: Open, copied: Pa
     assert (live.input("v", 1).input_value(), live.input("x_p", 2).input_value()) == ("2.334", "29.8")
 
 
+@pytest.mark.usefixtures("unjudged")
 def test_edits_that_were_saved_and_built_are_done_with(open_page: Open, copied: Path, tmp_path: Path) -> None:
     """The day's work in turns: edit, save, build, edit again; no issue of it is one of other edits."""
     live = open_page(copied)
