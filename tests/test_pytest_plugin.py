@@ -80,16 +80,17 @@ def test_a_test_is_selected_by_its_id_and_passes(campaign: Path) -> None:
 
 def test_a_published_value_that_differs_fails_alone_and_says_which(campaign: Path) -> None:
     published = campaign / "published.csv"
-    published.write_text(published.read_text().replace("alpha,1-2,1.234", "alpha,1-2,1.239"))
+    some = published.read_text().splitlines(keepends=True)[:5]
+    published.write_text("".join(some).replace("alpha,1-2,1.234", "alpha,1-2,1.239"))
     done = run(campaign.parent, "-k", "published")
     assert done.returncode == 1
     assert failed(done.stdout) == ["steel/report.toml::published::alpha[1-2]"]
     said = "steel/published.csv:2:19: Table 2 alpha[1-2] prints 1.239, recomputed 1.258, and differs"
     assert said in done.stdout
-    assert "26 passed" in done.stdout
+    assert "3 passed" in done.stdout
     alike = run(campaign.parent, "-k", "published", "--numprocesses", "2", "--dist", "loadfile")
     assert (failed(alike.stdout), alike.returncode) == (failed(done.stdout), 1)
-    assert "26 passed" in alike.stdout
+    assert "3 passed" in alike.stdout
     assert "Traceback" not in done.stdout
     assert "pytest_plugin.py" not in done.stdout
 
