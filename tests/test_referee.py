@@ -245,13 +245,17 @@ def test_with_the_known_misprint_put_right_everything_comes_out(paper: Report) -
 
 
 def changed(tmp_path: Path, file: str, before: str, after: str) -> Report:
-    """The paper with another print somewhere."""
+    """The paper with another print somewhere, refereed."""
+    return refereed(computed(tmp_path, file, before, after))
+
+
+def computed(tmp_path: Path, file: str, before: str, after: str) -> Report:
     folder = tmp_path / "campaign"
     shutil.copytree(PAPER, folder)
     text = (folder / file).read_text(encoding="utf-8")
     assert before in text
     (folder / file).write_text(text.replace(before, after), encoding="utf-8")
-    return refereed(Study(folder).computed)
+    return Study(folder).computed
 
 
 @pytest.mark.parametrize(
@@ -515,7 +519,7 @@ def test_without_a_statement_the_digits_have_to_explain_it() -> None:
 def test_an_error_that_tests_share_reaches_as_far_as_it_is_stated(tmp_path: Path) -> None:
     """A table that was made with the datum 0.3 um deeper: no digits allow it, and the statement does."""
     header = "source,cell,index,value,unit\n"
-    report = changed(tmp_path, "measurements.csv", "23.5", "23.8")
+    report = computed(tmp_path, "measurements.csv", "23.5", "23.8")
     moved = "".join(
         f"Table,alpha,{i}-{j},{report.values.cell('alpha', (i, j)).value:.4f},1\n"
         for i, j in [(1, 2), (1, 3)]
