@@ -57,10 +57,21 @@ def test_each_column_says_what_was_said_of_it(folder: Path) -> None:
     assert of_column(report, "points_per_pair") == ""
 
 
+DEPTHS = """from loopsheet import Method, let, mean, measured
+
+
+class Depths(Method):
+    x_p = measured("um", "a depth")
+    typical = let(mean(x_p), "mean of them")
+"""
+
+
 def test_of_many_rows_the_least_and_the_largest(tmp_path: Path) -> None:
-    rows = "".join(f"{n},{2 + n / 10:.3f},{0.53 - n / 200:.3f},{20 + n}.0({n})\n" for n in range(1, 14))
-    (tmp_path / "report.toml").write_text(TOML.partition("[uncertainty]")[0], encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text(f"test,v [m/s],e [1],x_p [um]\n{rows}", encoding="utf-8")
+    rows = "".join(f"{n},{20 + n}.0({n})\n" for n in range(1, 14))
+    (tmp_path / "workbook.py").write_text(DEPTHS, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text(f"test,x_p [um]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
     assert of_column(Study(tmp_path).computed, "x_p") == "u from 0.10 to 1.3 um"
 
 
