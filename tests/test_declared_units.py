@@ -57,7 +57,7 @@ def folder(path: Path, toml: str = TOML, header: str = "place,M [deg],a [mm]", c
 
 
 def test_formulas_have_si_and_readers_the_unit_that_was_written(tmp_path: Path) -> None:
-    report = Study(folder(tmp_path)).report
+    report = Study(folder(tmp_path)).computed
     value = report.values.value
     e, k, a = 0.1, 2e6 * 0.001**0.5, np.array([0.004, 0.0001])
     assert value["M"].tolist() == [float(PI / 36), float(PI)]
@@ -111,7 +111,7 @@ def test_what_is_wrong_is_told_in_that_unit(
 def test_an_angle_in_radians_is_one_in_degrees(tmp_path: Path) -> None:
     path = folder(tmp_path, TOML.replace("10.0 %", "0.1 1"), "place,M [arcmin],a [um]")
     (path / "measurements.csv").write_text("place,M [rad],a [um]\n1,1.5,4000\n2,3,100\n", encoding="utf-8")
-    report = Study(path).report
+    report = Study(path).computed
     assert report.values.value["M"].tolist() == [1.5, 3.0]
     assert report.shown["M"].unit == "rad"
     (path / "measurements.csv").write_text("place,M [rad],a [um]\n1,1.5,4000\n2,3.15,99\n", encoding="utf-8")
@@ -176,7 +176,7 @@ def test_a_spreadsheet_can_read_the_size_of_a_unit(unit: str) -> None:
 
 def test_the_shipped_examples_are_what_an_independent_solution_says() -> None:
     """Of every digit, where the publication prints some."""
-    kepler, pipe, spheres = (Study(PAPER.parent / name).report for name in ("kepler", "colebrook", "hertz"))
+    kepler, pipe, spheres = (Study(PAPER.parent / name).computed for name in ("kepler", "colebrook", "hertz"))
     with mpmath.workdps(50):
         m = mpmath.radians(5)
         for row, e in enumerate(["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "0.99"]):

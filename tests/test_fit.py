@@ -318,7 +318,7 @@ def test_two_fits_of_one_column_by_its_stated_uncertainties(tmp_path: Path) -> N
         "Letters behind the number of a fit are this project’s"
         in (tmp_path / "out" / "report.html").read_text()
     )
-    report = Study(tmp_path).report
+    report = Study(tmp_path).computed
     assert not report.faults
     time, size = np.array([1, 2, 3.5, 4, 5]), np.array([0.02, 0.03, 0.02, 0.04, 0.04])
     volts = np.array([2.105, 3.12, 4.65, 5.09, 6.12])

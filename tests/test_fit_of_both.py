@@ -130,7 +130,7 @@ def test_weights_that_leave_out_what_is_stated_are_told(tmp_path: Path, stated: 
     folder = pearson(tmp_path)
     with (folder / "report.toml").open("a", encoding="utf-8") as file:
         file.write(stated)
-    said = [check.message for check in Study(folder).report.oddities if check.note == "warning"]
+    said = [check.message for check in Study(folder).computed.oddities if check.note == "warning"]
     ends = f"{told}: a and b are not the likeliest numbers; their u counts it"
     assert any(each.endswith(f"line_S and its weights leave out that {ends}") for each in said) == bool(
         told

@@ -41,7 +41,7 @@ def test_every_engine_computes_it(
 
 
 def test_a_group_is_a_row(tmp_path: Path) -> None:
-    report = Study(grouped.write(tmp_path)).report
+    report = Study(grouped.write(tmp_path)).computed
     values = report.values
     assert values.labels(report.sheet["level"]) == [(1,), (2,), (3,)]
     assert values.value["many"].tolist() == [3, 2, 2]
@@ -101,7 +101,7 @@ def test_a_reading_that_is_missing_is_left_out(tmp_path: Path) -> None:
         tmp_path, tuple((*row, "1.0") for row in rows), "instrument,y [mm],x [mm]", code,
         '[expected]\n"y[3]" = "not taken"\n',
     )  # fmt: skip
-    report = Study(folder).report
+    report = Study(folder).computed
     assert report.values.value["many"].tolist() == [2, 2, 2]
     left_out = [[each[:2] for each in report.values.left_out("level", row)] for row in range(3)]
     assert left_out == [[(2, 3)], [], []]

@@ -115,7 +115,7 @@ def folder(path: Path, code: str, parameters: str) -> Path:
 def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The friction factor of Colebrook's equation by mpmath, and decimals as they were typed."""
     where = folder(tmp_path, PIPE, 'Re = "1.00e5, u = 1e3"\nrough = "0.0010"\n')
-    report = Study(where).report
+    report = Study(where).computed
 
     def residual(f: mpmath.mpf) -> mpmath.mpf:
         inside = mpmath.mpf("0.001") / mpmath.mpf("3.7") + mpmath.mpf("2.51") / (100_000 * mpmath.sqrt(f))
@@ -213,7 +213,7 @@ def test_points_and_lines_are_declared(tmp_path: Path, chdir: Callable[[Path], N
     """Every point is in the frame, however far from the line; page and workbook draw the same chart."""
     chdir(tmp_path)
     assert main(["new", "line", "--workbook", "linefit"]) == 0
-    report = Study(Path("line")).report
+    report = Study(Path("line")).computed
     fit, left = report.workbook.charts
     assert [(s.x, s.y, s.style) for s in fit.series] == [
         ("x", "y", "points"),
@@ -442,7 +442,7 @@ def test_a_folder_to_begin_with(
             | ({"measurements.csv"} if name not in ("root", "blank") else set())
         )
     ] * 2
-    report = Study(both[1]).report
+    report = Study(both[1]).proved
     assert not report.faults
     assert all(proof.status.passes for proof in report.proofs)
     found = {cell: report.values.scalar(cell) for cell in known}

@@ -232,7 +232,7 @@ def test_where_only_second_order_counts_no_table_of_sources_is_empty(tmp_path: P
     given = "".join(f'x_{n} = "0.001, u = 1"\n' for n in range(1, 5))
     toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n'
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    report = Study(tmp_path).report
+    report = Study(tmp_path).computed
     assert Material(report).budgets[0].contributions
     article = latex.render(report, [])
     assert "most of it from" in article

@@ -115,7 +115,7 @@ def test_figures_have_them_and_no_table_does(folder: Path) -> None:
     assert figure.chart is not None
     assert [each.style for each in figure.chart.series] == ["points", "line", "line", "line"]
     assert [each.each for each in figure.chart.series] == [False, True, False, True]
-    told = Study(folder).report.workbook.tables
+    told = Study(folder).computed.workbook.tables
     assert not {"h", "law", "z", "of_all"} & {name for spec in told for name in spec.columns}
 
 

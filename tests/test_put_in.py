@@ -39,7 +39,7 @@ def test_hertz_is_calculated_as_on_paper() -> None:
 
 @pytest.mark.parametrize(("name", "cell", "label"), [("kepler", "E", (1,)), ("colebrook", "f", ())])
 def test_why_puts_the_root_itself_in(name: str, cell: str, label: tuple[int, ...]) -> None:
-    told = why(Study(DATA / name).report, cell, label)
+    told = why(Study(DATA / name).proved, cell, label)
     (line,) = (line for line in told.splitlines() if line.startswith("  in SI"))
     assert not re.search(rf"\b{cell}\b", line)
 
@@ -100,7 +100,7 @@ def test_what_only_renames_a_number_and_the_parts_of_a_fit_are_not_shown() -> No
 
 
 def test_page_and_print_have_the_chapter_and_the_paper_has_none(tmp_path: Path) -> None:
-    report = Study(DATA / "hertz").report
+    report = Study(DATA / "hertz").proved
     page, print_ = render(report, {}), render_latex(report, ())
     assert len(re.findall('<section id="?put-in"? data-issued', page)) == 1
     assert r"\section{Numbers put in}" in print_

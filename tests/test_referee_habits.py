@@ -60,7 +60,7 @@ def judged(folder: Path, book: str, published: str, more: str) -> tuple[list[str
         '[published]\nfile = "published.csv"\n',
         encoding="utf-8",
     )
-    referee = Study(folder).report.referee
+    referee = Study(folder).refereed.referee
     found = referee.explanations if referee.asked_why else referee.slips
     return tuple([claimed(change) for change in each.changes] for each in found)
 

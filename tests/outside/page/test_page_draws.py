@@ -40,9 +40,7 @@ def draws_at_once() -> bool:
     return True
 
 
-def drawn(
-    report: Report, name: str, label: tuple[int, ...] = (), size: int = 20_000
-) -> np.ndarray[Any, Any]:
+def drawn(report: Report, name: str, label: tuple[int, ...] = (), size: int = 20_000) -> np.ndarray[Any, Any]:
     """As many draws of a cell as NumPy makes; NaN where it has no value."""
     draws = _Draws(report.inputs, report.values, name, seed=2)
     row = report.values.row(report.values.sheet[name], label)
