@@ -167,5 +167,5 @@ def test_digits_were_cut_off_of_what_is_said_to_be_truncated(
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     study = Study(tmp_path)
-    found = [c for c in (*study.report.comparisons, *study.report.comparisons_u) if c.verdict != "same"]
+    found = [c for c in (*study.refereed.comparisons, *study.refereed.comparisons_u) if c.verdict != "same"]
     assert len(found) == differs

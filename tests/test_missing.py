@@ -173,7 +173,7 @@ def test_the_referee_leaves_an_empty_cell_empty(tmp_path: Path, printed: str, ve
 
 
 def test_the_page_keeps_an_empty_cell_empty(tmp_path: Path) -> None:
-    page = html.render(Study(readings(tmp_path / "r")).report, {}, program="")
+    page = html.render(Study(readings(tmp_path / "r")).computed, {}, program="")
     known = json.loads(re.findall(r'id="?live-data"?>(.*?)</script>', page, re.DOTALL)[0])
     (table,) = known["tables"].values()
     assert [row["cells"] for row in table["rows"]] == [

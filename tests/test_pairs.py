@@ -53,7 +53,7 @@ def folder(path: Path, code: str = SEN) -> Path:
 
 
 def test_every_pair_has_a_value(tmp_path: Path) -> None:
-    report = Study(folder(tmp_path)).report
+    report = Study(folder(tmp_path)).computed
     both = list(combinations(range(7), 2))
     slopes = np.array([(Y[j] - Y[i]) / (X[j] - X[i]) for i, j in both])
     assert report.values.value["slope"] == pytest.approx(slopes, rel=1e-14)
@@ -82,7 +82,7 @@ def test_what_is_summed_over_pairs_needs_no_line_of_its_own(tmp_path: Path) -> N
     code += (
         "    m = let(mean(second(x) - first(x)), 'mean distance')\n    many = let(count(first(x)), 'pairs')\n"
     )
-    report = Study(folder(tmp_path, code)).report
+    report = Study(folder(tmp_path, code)).computed
     apart = [b - a for a, b in combinations(X, 2)]
     assert report.values.scalar("m") == pytest.approx(np.mean(apart), rel=1e-14)
     assert report.values.scalar("many") == 21
