@@ -13,6 +13,7 @@ from loopsheet.report.build import build
 from loopsheet.report.charts import BARS
 from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
+from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.method import words
 from loopsheet.report.study import Study
 from loopsheet.report.views import charts
@@ -44,6 +45,24 @@ def test_each_group_has_the_line_of_its_rows_alone(tmp_path: Path, seed: int, gr
         of_rows = [n for n, row in enumerate(rows) if row[0] == word]
         assert values["line_residual"][of_rows] == pytest.approx(left, abs=1e-12)
         assert sure["b"][place] == pytest.approx(0.05 / np.sqrt(((x - x.mean()) ** 2).sum()), rel=1e-11)
+
+
+@pytest.mark.parametrize(("stated", "told"), [(0.05, False), (0.0005, True)])
+def test_its_residuals_are_held_against_what_is_stated(tmp_path: Path, stated: float, told: bool) -> None:
+    """All lines together: each leaves its rows but two for its parameters, one of two rows none."""
+    rows = (*drawn(2, 4), ("few", "1", "1.0"), ("few", "2", "1.4"))
+    text = f'[uncertainty]\nx = "exact"\ny = "u = {stated}"\n'
+    report = Study(grouped.write(tmp_path, rows, HEAD, METHOD, text)).computed
+    misfit = report.uncertain().misfits["line_S"]
+    squares, numbers = 0.0, []
+    for word in dict.fromkeys(row[0] for row in rows):
+        x, y = np.array([row[1:] for row in alone(rows, word)], dtype=float).T
+        squares += float(((y - np.polyval(np.polyfit(x, y, 1), x)) ** 2).sum())
+        numbers.append(len(x) - 2)
+    assert misfit.chi2 == pytest.approx(squares / stated**2, rel=1e-6)
+    assert misfit.dof == sum(numbers)
+    found = [check.message for check in oddities(report) if check.name == "line_S"]
+    assert ["understated" in each for each in found] == [told]
 
 
 def test_it_is_the_fit_without_groups_where_there_is_one(tmp_path: Path) -> None:

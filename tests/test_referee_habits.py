@@ -50,10 +50,10 @@ class Line(Method, source="own", rows="runs"):
 '''
 
 
-def judged(folder: Path, book: str, published: str, more: str) -> tuple[list[str], ...]:
+def judged(folder: Path, book: str, published: str, more: str, runs: str = RUNS) -> tuple[list[str], ...]:
     """What the referee holds for possible of a publication: the words of each explanation."""
     (folder / "workbook.py").write_text(book, encoding="utf-8")
-    (folder / "measurements.csv").write_text(RUNS, encoding="utf-8")
+    (folder / "measurements.csv").write_text(runs, encoding="utf-8")
     (folder / "published.csv").write_text(f"source,cell,index,value,unit\n{published}", encoding="utf-8")
     (folder / "report.toml").write_text(
         f'workbook = "workbook.py"\n{more}[measurements]\nfile = "measurements.csv"\n'
@@ -147,3 +147,40 @@ def test_an_uncertainty_that_is_another_one(published: str, told: str, tmp_path:
     judged(tmp_path, SCATTER, f"T,{published}\n", '[uncertainty]\nV = "u = 0.05 mL"\n')
     (found,) = (each for each in checks(Study(tmp_path).refereed) if each.kind == "published")
     assert (found.passed, found.message) == (False, f"T {told}")
+
+
+SIGNED = '''\
+from loopsheet import Method, let, measured
+
+
+class Signed(Method, source="own", rows="runs"):
+    """A number whose sign was lost."""
+
+    m = measured("{unit}", "what has a sign")
+    V = measured("mL", "what has none", positive=True)
+    a = let({formula}, "made of it", "{of}")
+    b = let(m, "itself", "{unit}")
+'''
+
+
+@pytest.mark.parametrize(
+    ("unit", "formula", "of", "rows"),
+    [
+        ("V", "m / V", "V/mL", ("0.40904", "-0.41202", "0.40920")),
+        ("degC", "m", "degC", ("10.2314", "-10.3941", "10.1773")),
+    ],
+)
+def test_a_sign_that_was_lost(
+    unit: str, formula: str, of: str, rows: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Of a temperature it is that of its number: what is below 0 degC is not below 0 K."""
+    lines = [f"T,a,{n},{text},{of}\n" for n, text in enumerate(rows, start=1)]
+    book = SIGNED.format(unit=unit, formula=formula, of=of)
+    told = judged(
+        tmp_path,
+        book,
+        "".join([*lines, f"T,b,2,-10.3941,{unit}\n"]),
+        "",
+        RUNS.replace("m [g]", f"m [{unit}]"),
+    )
+    assert told[0][0].startswith("m[2] is printed 10.3941 for -10.3941")

@@ -401,7 +401,7 @@ class _Oddities:
 
     def of_residuals(self, curve: Curve) -> Check:
         """Whether the uncertainties of its rows make the residuals of a curve as large as they are."""
-        known = self.report.uncertain().misfits.get(curve.name)
+        known, (first, *_) = self.report.uncertain().misfits.get(curve.name), self.values.cells(curve.name)
         if known is None:
             left = self.values.rows_summed(curve.name, curve.axis) > len(curve.fitted)
             said = f"nothing left over of {curve.axis}"
@@ -415,13 +415,13 @@ class _Oddities:
         if not known.is_stated:
             small = 1.0  # nobody overstated what the printed digits say
         instead = self.instead(curve, known) if large < RARE else ""
-        return self.by_chance(self.values.cell(curve.name), found, curve.axis, large, small, instead)
+        return self.by_chance(first, found, curve.axis, large, small, instead)
 
     def instead(self, curve: Curve, known: Misfit) -> str:
         """What to state if the model is right: what the scatter about the curve tells."""
         what = "what is stated" if known.is_stated else "what the printed digits say"
         told = f"; if the model is right, u is {rounded(known.birge, 2).plain} times {what} (Birge's ratio)"
-        if curve.observed not in self.inputs.measured or curve.weighed:
+        if curve.observed not in self.inputs.measured or curve.weighed or self.sheet[curve.name].axis:
             return f"{told}, and by the scatter {_some([f's_{each}' for each in curve.fitted])}"
         shown = self.report.shown[curve.scatter]
         size = rounded(shown.of(self.values.scalar(curve.scatter)), 2).plain + behind(shown.unit)

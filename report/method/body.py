@@ -552,8 +552,8 @@ class MethodBody(dict[str, Any]):
         self.of_fits |= {column.name: column.name in self.announced for column in found.columns}
         self.bounds |= {str(each): line.bounds for each, line in sought.items()}
         self.fits.append(found)
+        self.curves.append(found.curve)
         if said.of is None:
-            self.curves.append(found.curve)
             self.inputs = [
                 replace(each, scatter=found.curve.scatter)
                 if isinstance(each, Measured) and each.name == name_of(said.observed)

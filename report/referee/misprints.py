@@ -194,6 +194,10 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
 
 def freed(search: Search, problem: Problem, n: int) -> Array | None:
     """An input in which one given cell has any value, and everything comes out; None if there is none."""
+    if (turned := _turned(problem, n)) is not None:
+        now = best(problem, turned, until=1.0)
+        if now.mismatch <= 1:
+            return now.point
     edges = _edges(problem, n)
     pieces = [problem.box.moved([n], [low], [high], [(low + high) / 2]) for low, high in pairwise(edges)]
     alive = search.alive(pieces, problem)
@@ -210,6 +214,16 @@ def freed(search: Search, problem: Problem, n: int) -> Array | None:
             return now.point
     search.drop(certain=False)
     return None
+
+
+def _turned(problem: Problem, n: int) -> Box | None:
+    """The box with the other sign of a given cell; None where it has none, or that is not allowed."""
+    box, unknown = problem.box, problem.unknowns[n]
+    twice = 2 * float(unknown.printed.zero) if unknown.printed else 0.0
+    low, high, start = (twice - float(end) for end in (box.high[n], box.low[n], box.start[n]))
+    if not start or unknown.allowed.clip(low, high) != (low, high):
+        return None
+    return box.moved([n], [low], [high], [start])
 
 
 def _range(problem: Problem, n: int) -> tuple[float, float]:

@@ -399,7 +399,8 @@ class Spread:
 
         None where nothing is left over, where a row has no uncertainty, and where there are too many rows.
         """
-        rows, fitted = self._valued(curve.residual), len(curve.fitted)
+        # Of groups of rows each has a fit of its own.
+        rows, fitted = self._valued(curve.residual), len(curve.fitted) * len(self._valued(curve.name))
         if not fitted < len(rows) <= MOST_ROWS or not self.knows(curve.residual):
             return None
         residuals = self.values.value[curve.residual][rows]

@@ -178,8 +178,9 @@ def _over(report: Report, column: Column, row: int, axis: Axis) -> str:
 
 
 def _curve_of(report: Report, column: Column) -> Curve | None:
-    """The fit that finds a column."""
-    return next((curve for curve in report.workbook.curves if column.name in curve.fitted), None)
+    """The fit that finds a column, of all rows together."""
+    alone = (curve for curve in report.workbook.curves if report.sheet[curve.name].axis is None)
+    return next((curve for curve in alone if column.name in curve.fitted), None)
 
 
 def _data(report: Report, curve: Curve) -> Iterator[Group]:
