@@ -4,6 +4,7 @@ import json
 import math
 import re
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -306,3 +307,44 @@ def test_draws_stand_alone_where_there_is_no_coverage_factor(
     said = told(capsys, "l", str(folder), "--draws", "2000")
     assert "k is not known: correlated sources have finite degrees of freedom" in said
     assert said.endswith("the law of propagation tells no interval to compare with\n")
+
+
+TIED = '[uncertainty.correlation]\n"a, b" = "0.5"\n'
+APART = """from loopsheet import Method, given, let
+
+
+class Apart(Method, headline="y"):
+    a, b = given("mm", "a"), given("mm", "b")
+    y = let(a - b, "difference", "mm")
+"""
+EQUAL = """from loopsheet import Method, let, mean, measured
+
+
+class Equal(Method, rows="readings", headline="y"):
+    v = measured("V", "reading")
+    y = let(mean(v), "mean", "V")
+"""
+SAMPLES = "a [mm],b [mm]\n" + "".join(
+    f"{12 + n % 7 / 10},{3.6 + n % 7 / 30 + n % 3 / 100}\n" for n in range(120)
+)
+
+
+@pytest.mark.parametrize(
+    ("book", "toml"),
+    [
+        (APART, '[parameters]\na = "12.0 mm, +-1 mm arcsine"\nb = "3.6 mm, +-0.2 mm tri"\n' + TIED),
+        (APART, '[parameters]\na = "12.0 mm, samples = s.csv"\nb = "3.6 mm, samples = s.csv"\n'),
+        (EQUAL, '[measurements]\nfile = "m.csv"\n[uncertainty]\nv = "scatter"\n'),
+    ],
+    ids=["correlated, of other shapes", "from one table", "equal readings"],
+)
+def test_a_spreadsheet_calculates_what_was_issued(
+    require: Callable[..., str], tmp_path: Path, book: str, toml: str
+) -> None:
+    require("soffice", "libreoffice")
+    (tmp_path / "workbook.py").write_text(book)
+    (tmp_path / "report.toml").write_text(f'workbook = "workbook.py"\n{toml}')
+    (tmp_path / "s.csv").write_text(SAMPLES)
+    (tmp_path / "m.csv").write_text("reading,v [V]\n1,5.007\n2,5.007\n3,5.007\n")
+    (found,) = (each for each in Study(tmp_path).engines if each.engine == "xlsx")
+    assert found.findings == ()
