@@ -325,7 +325,7 @@ class Equal(Method, rows="readings", headline="y"):
     y = let(mean(v), "mean", "V")
 """
 SAMPLES = "a [mm],b [mm]\n" + "".join(
-    f"{12 + n % 7 / 10},{3.6 + n % 7 / 30 + n % 3 / 100}\n" for n in range(120)
+    f"{11.7 + n % 7 / 10:.2f},{3.5 + n % 7 / 30 + n % 3 / 100:.4f}\n" for n in range(120)
 )
 
 
