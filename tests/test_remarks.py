@@ -201,3 +201,19 @@ def test_a_misspelt_column_is_still_refused(
     code = main(["build", str(gas.folder(tmp_path, table=TABLE.replace(old, new))), "--to", "json"])
     err = capsys.readouterr().err
     assert (code, said is None or said in err) == ((0, True) if said is None else (2, True)), err
+
+
+def test_accepting_knows_rows_by_their_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = {
+        "workbook.py": "from loopsheet import Method, let, measured\n\n\nclass Double(Method, rows='runs'):\n"
+        "    a = measured('mm', 'length')\n    b = let(2 * a, 'double', 'mm')\n",
+        "m.csv": "run,name,a [mm]\n1,left,1.0\n2,right,2.0\n",
+        "published.csv": "source,cell,index,value,unit,expect,reason\n"
+        "T,b,left,2.0,mm,,\nT,b,right,5.0,mm,differs,a slip\n",
+        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+        '[published]\nfile = "published.csv"\n',
+    }
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    assert main(["check", "--accept", str(tmp_path)]) == 0, capsys.readouterr()
+    assert (tmp_path / "published.csv").read_text().endswith("T,b,right,5.0,mm,differs,5.0 -> 4.0,a slip\n")
