@@ -133,19 +133,23 @@ def test_far_outside_the_probability_keeps_its_digits() -> None:
     assert found.producer_risk == pytest.approx(float(mpmath.ncdf(-10) - mpmath.ncdf(-20)), rel=1e-12)
 
 
+UNKNOWN = "the guard band is not known"
+
+
 @pytest.mark.parametrize(
     ("value", "u", "factor", "decision", "because"),
     [
         (math.nan, math.nan, math.nan, Decision.NONE, "it has no value"),
-        (5.0, math.nan, math.nan, Decision.NONE, "the guard band is not known: who knows"),
+        (5.0, math.nan, math.nan, Decision.NONE, f"{UNKNOWN}: nothing is known of the uncertainty"),
         (11.0, math.nan, math.nan, Decision.DOES_NOT, "it lies outside of the tolerance limits"),
         (10.0, 0.0, 1.96, Decision.CONFORMS, "it lies within the acceptance limits"),
-        (5.0, 1.0, math.nan, Decision.NONE, "the guard band is not known: who knows"),
+        (5.0, 1.0, math.nan, Decision.NONE, f"{UNKNOWN}: who knows"),
     ],
 )
 def test_what_is_not_known(value: float, u: float, factor: float, decision: Decision, because: str) -> None:
     high = read_printed("10", parse_unit("1"))
-    budget = Budget("y", "y", (), value, u, level=0.95, factor=factor, because="who knows")
+    because_of_it = "" if math.isnan(u) else "who knows"
+    budget = Budget("y", "y", (), value, u, level=0.95, factor=factor, because=because_of_it)
     found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()))
     assert (found.decision, found.because) == (decision, because)
     assert math.isnan(found.probability) == (u != 0)

@@ -329,7 +329,8 @@ class Conformity:
         if math.isnan(self.budget.value):
             return "it has no value"
         if math.isnan(self.guard):
-            return f"the guard band is not known: {self.budget.because or self.budget.unlooked}"
+            why = self.budget.because or self.budget.unlooked or "nothing is known of the uncertainty"
+            return f"the guard band is not known: {why}"
         low, high = self.acceptance
         return "the guard bands meet: no value is accepted" if low > high else "it lies in the guard band"
 

@@ -98,7 +98,7 @@ def write_limits(
     to.end("low", "lower tolerance limit", "", place.of(low), "General")
     to.end("high", "upper tolerance limit", "", place.of(high), "General")
     if math.isnan(found.probability) or math.isnan(found.guard):
-        why = budget.because if math.isnan(budget.factor) else found.because
+        why = (math.isnan(budget.factor) and budget.because) or found.because
         style.text(sheet, to.row, 0, f"what is decided is not known: {why}")
         return to.row + 1
     width = ""
