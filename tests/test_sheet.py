@@ -102,10 +102,11 @@ def test_an_unknown_is_no_precedent() -> None:
 
 PROGRAM = """\
 from loopsheet.report.workbooks.soft_impact import sheet
-from loopsheet.report.engines.numpy import Program
+from loopsheet.report.engines.numpy_texts import program_texts
+from loopsheet.report.plan.lowering import lowered
 found = sheet(frozenset({'ball_diameter', 'ball_density', 'target_mass'}))
 print([(c.name, found.named(c)) for c in found.order])
-print(Program.of(found).source)
+print(program_texts(found, lowered(found)))
 """
 CELLS = """\
 from loopsheet.report.engines import excel_grid

@@ -50,6 +50,8 @@ class Program:
     """By column name."""
     loops: Mapping[str, LoopProgram]
     """By column name."""
+    source: str
+    """The text of the function; those of roots and loops are their own."""
     functions: Any = SAME
     """What computes exponentials, logarithms and powers."""
     _laid: dict[Any, Laid] = field(default_factory=dict, repr=False)
@@ -102,7 +104,8 @@ class Program:
         """
         roots = {name: RootProgram.of(root, functions) for name, root in texts["roots"].items()}
         loops = {name: LoopProgram.of(loop, functions) for name, loop in texts["loops"].items()}
-        return cls(sheet, known, compiled(texts["sheet"], functions), roots, loops, functions)
+        function = compiled(texts["sheet"], functions)
+        return cls(sheet, known, function, roots, loops, texts["sheet"], functions)
 
     def run(
         self,

@@ -474,7 +474,7 @@ class _Written:
         tied = [n for n, source in own_sources if source.name in named and not source.table]
         if tied and not self.budget.second:  # correlated errors are taken as normal
             those = ",".join(map(str, tied))
-            dominant = f"IF(ISNUMBER(MATCH({place},{{{those}}},0)),{otherwise},{dominant})"
+            dominant = f'IF(ISNUMBER(FIND(","&{place}&",",",{those},")),{otherwise},{dominant})'
         return (
             f"IF({at['largest']}=0,{otherwise},"
             f"IF({at['others']}<={DOMINANT}*{at['largest']},{dominant},{otherwise}))"
