@@ -216,14 +216,14 @@ class _Rows:
 
 def _words(result: Result, axis: str) -> dict[int, str]:
     """What the rows of an index set are known by; a row that is left out may have no word."""
-    every = {} if result.words is UNSET else result.words
-    return {number: word for number, word in sorted(every.get(axis, {}).items()) if word}
+    every = (result.words or {}).get(axis, {})
+    return {number: word for number, word in sorted(every.items()) if word}
 
 
 def _by_word(before: Result, after: Result) -> tuple[str, ...]:
     """The index sets of which a word has another number since, and whose words stand for their rows."""
     found = []
-    for axis in {} if before.words is UNSET else before.words:
+    for axis in before.words or {}:
         since = {word: number for number, word in _words(after, axis).items()}
         moved = any(since.get(word, number) != number for number, word in _words(before, axis).items())
         if moved and _stand_for_rows(before, axis) and _stand_for_rows(after, axis):
@@ -236,8 +236,7 @@ def _stand_for_rows(result: Result, axis: str) -> bool:
 
     Other numbers were written by somebody: they are names, too.
     """
-    words, every = _words(result, axis), {} if result.words is UNSET else result.words
-    numbers = {*every.get(axis, {})}
+    words, numbers = _words(result, axis), {*(result.words or {}).get(axis, {})}
     rows = next(([*column.cells] for column in result.cells.values() if column.axis == axis), [])
     return (
         numbers == {*range(1, len(numbers) + 1)}
@@ -306,10 +305,9 @@ def _method(column: Column) -> str:
 
 def _called(rows: _Rows) -> dict[str, str]:
     """The word of each row that has one and is known by its number, as ``samples 2``."""
-    every = {} if rows.result.words is UNSET else rows.result.words
     return {
         f"{axis} {number}": word
-        for axis, words in every.items()
+        for axis, words in (rows.result.words or {}).items()
         if axis not in rows.words
         for number, word in words.items()
     }

@@ -194,7 +194,8 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
 
 def freed(search: Search, problem: Problem, n: int) -> Array | None:
     """An input in which one given cell has any value, and everything comes out; None if there is none."""
-    if (turned := _turned(problem, n)) is not None:
+    turned = _turned(problem, n)
+    if turned is not None and search.alive([turned], problem):
         now = best(problem, turned, until=1.0)
         if now.mismatch <= 1:
             return now.point

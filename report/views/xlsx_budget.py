@@ -175,18 +175,23 @@ class _Written:
             form = style("number", as_printed(report, block, cell))
             style.formula(sheet, row, 1, f"={allowed}", block.place.of(each.estimate), form)
         style.text(sheet, row, 2, block.unit, "unit")
-        dof, size, number, shape = min(source.dof, _UNLIMITED), self.size(row, each), "", source.shape.value
+        dof, size, number, kind = min(source.dof, _UNLIMITED), self.size(row, each), "", ""
+        shape = source.shape.value
         if source.said == SCATTER:
-            size, number = (f"={what}({self.readings(source)})" for what in ("STDEV", "COUNT"))
-            number += "-1"
-        if source.said == SCATTER and source.u and source.shape is not Shape.STUDENT:
-            # Of readings that are all the same the digits leave more, as long as they are.
-            none = f"{size}=0"
-            size, number = (
-                f"=IF({none[1:]},{source.u / scale!r},{size[1:]})",
-                f"=IF({none[1:]},{dof!r},{number[1:]})",
-            )
-            kind = f'=IF({none[1:]},"{shape}","{Shape.STUDENT}")'
+            own = self.readings(source)
+            spread, left = f"STDEV({own})", f"COUNT({own})-1"
+            size, number = f"={spread}", f"={left}"
+            if source.u and source.shape is not Shape.STUDENT:
+                # Of readings that are all the same the digits leave more, as long as they are.
+                size, number, kind = (
+                    f"=IF({spread}=0,{now},{then})"
+                    for now, then in (
+                        (repr(source.u / scale), spread),
+                        (repr(dof), left),
+                        (f'"{shape}"', f'"{Shape.STUDENT}"'),
+                    )
+                )
+        if kind:
             style.formula(sheet, row, 4, kind, shape, style("chosen"))
         else:
             style.text(sheet, row, 4, shape, "chosen")
