@@ -333,6 +333,13 @@ def test_what_is_pinned_does_not_hide_the_next_error() -> None:
     of = found(SHEET, {"x": x}, cells)
     assert [each[:3] for each in changes(of)[0]] == [("unit", "x", ())]
     assert (of.explanations[0].values, of.explanations[0].of) == (3, 4)
+    assert of.pinned == ()
+    known = [replace(cell, explained="misprint tenfold[2]") if cell.pin else cell for cell in cells]
+    of = found(SHEET, {"x": x}, known)
+    assert not words.holds("misprint tenfold[2]", of.explanations)
+    assert words.holds("misprint tenfold[2]", of.possible_reasons)
+    wrong = found(SHEET, {"x": x}, [replace(cell, explained="misprint x[2]") for cell in known])
+    assert not words.holds("misprint x[2]", wrong.possible_reasons)
     unpinned = [replace(cell, expect="", pin=None) for cell in cells]
     assert not any(each[0][:3] == ("unit", "x", ()) for each in changes(found(SHEET, {"x": x}, unpinned)))
 

@@ -73,9 +73,9 @@ def accepted(report: Report, reason: str = "") -> Accepted:
     table = None if source is None else read_table(source, COLUMNS, findings)
     findings.check()
     assert table is not None  # it was read before, with the same content
-    explanations = (*report.referee.explanations, *report.referee.slips)
+    reasons = report.referee.possible_reasons
     words = [
-        _words(comparison, reason, holds(comparison.published.explained, explanations))
+        _words(comparison, reason, holds(comparison.published.explained, reasons))
         for comparison in report.every_comparison
     ]
     new = [name for name in COLUMNS if any(each.get(name) for each in words) and name not in _names(table)]

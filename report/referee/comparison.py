@@ -181,4 +181,4 @@ def _refereed(comparison: Comparison, verdict: Verdict, found: Referee) -> str:
     wrong = (change for each in found.misprints for change in each.changes)
     if own in {(change.source, change.cell, change.index) for change in wrong}:
         return UNAMENDED
-    return "" if words.holds(published.explained, (*found.explanations, *found.slips)) else UNEXPLAINED
+    return "" if words.holds(published.explained, found.possible_reasons) else UNEXPLAINED

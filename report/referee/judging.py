@@ -37,6 +37,7 @@ from .explain import Explained, explanations, possibilities
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
 from .problem import Problem
+from .search import Search
 from .values import verdicts
 
 __all__ = ["referee"]
@@ -97,7 +98,7 @@ def referee(
         near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
         tables = [_allowed(campaign, table, checkable, near) for table in tables]
         joint = _allowed(campaign, joint, checkable, near)
-    explained: tuple[Explained, ...] = ()
+    explained, pinned = tuple[Explained, ...](), tuple[Explained, ...]()
     tried: Tried | None = None
     asked = [value for value in published if not _is_gone(campaign, value)]
     if len(checkable) < len(asked):
@@ -105,7 +106,7 @@ def referee(
         whole = Problem.of(campaign, asked)
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
-        explained, tried = _explained(whole, step)
+        explained, tried, pinned = _explained(whole, step)
     slips: tuple[Explained, ...] = ()
     if found.mismatch > 1 and joint.verdict == WITHIN:
         step("refereeing what a habit or one slip would explain")
@@ -122,6 +123,7 @@ def referee(
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints, tuple(each.explanation for each in slips),
+        tuple(each.explanation for each in pinned),
     )  # fmt: skip
 
 
@@ -136,8 +138,13 @@ def _is_gone(campaign: Campaign, published: PublishedValue) -> bool:
     return is_empty or missing_as_expected(cell, values, inputs.expected)
 
 
-def _explained(whole: Problem, step: Callable[[str], None]) -> tuple[tuple[Explained, ...], Tried]:
-    """What would explain all; or with less changes what is not known to differ, if that does not come out."""
+def _explained(
+    whole: Problem, step: Callable[[str], None]
+) -> tuple[tuple[Explained, ...], Tried, tuple[Explained, ...]]:
+    """What would explain all; or with less changes what is not known to differ, if that does not come out.
+
+    Last, what explains the known differences by themselves: another wrong value does not make theirs wrong.
+    """
     explained, tried = explanations(whole, step)
     known = {
         n for n, value in enumerate(whole.published)
@@ -145,11 +152,15 @@ def _explained(whole: Problem, step: Callable[[str], None]) -> tuple[tuple[Expla
     }  # fmt: skip
     rest = whole.ignoring(known)
     if not known or (explained and explained[0].explanation.count <= 1) or meet(rest).mismatch <= 1:
-        return explained, tried
+        return explained, tried, ()
     others, looked = explanations(rest, step)
     if others and (not explained or others[0].explanation.count < explained[0].explanation.count):
-        return others, looked
-    return explained, tried
+        explained, tried = others, looked
+    new = set(Search(whole).differing) - known
+    if not new or not any(whole.published[n].explained for n in known):
+        return explained, tried, ()
+    alone = whole.ignoring(new)
+    return explained, tried, explanations(alone, step)[0] if meet(alone).mismatch > 1 else ()
 
 
 def _allowed(

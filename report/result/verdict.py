@@ -269,6 +269,13 @@ class Referee:
     """What else would have to change then, if they do not come out."""
     slips: tuple[Explanation, ...] = ()
     """One slip each that would explain what the stated uncertainties explain as well."""
+    pinned: tuple[Explanation, ...] = ()
+    """What explains the known differences where values that are none of them do not come out."""
+
+    @property
+    def possible_reasons(self) -> tuple[Explanation, ...]:
+        """All that a known difference may be explained by."""
+        return *self.explanations, *self.slips, *self.pinned
 
     @property
     def as_printed(self) -> bool:
