@@ -397,10 +397,10 @@ def for_a_grid(report: Report) -> Drawn:
     inputs, sheet = report.inputs, report.sheet
 
     def make() -> Drawn:
-        from .engines.excel_grid import with_passes
+        from .engines.excel_grid import with_first_pass
 
         curves = with_copies(drawn(inputs, sheet), sheet, inputs.workbook.charts)
-        return with_passes(curves, sheet) or curves
+        return with_first_pass(curves, sheet) or curves
 
     return drawn_of(inputs.workbook, inputs.given, sheet, "curves of a worksheet", make)
 

@@ -136,7 +136,7 @@ def _passes_too_few(campaign: Campaign, judge: Judge, name: str) -> bool:
     sheet = judge.sheet
     within = {name, *(each.name for each in sheet.ancestors(sheet[name]))}
     loops = [loop for loop in sheet.loops if within & set(loop.names)]
-    whole = Sheet((*sheet.columns, *pass_columns(sheet)))
+    whole = Sheet((*sheet.columns, *pass_columns(sheet, PASSES)))
     values = exact.evaluate(whole, campaign.labels, campaign.data).value
     last = [
         pair

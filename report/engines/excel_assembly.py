@@ -34,13 +34,13 @@ from ..charts import MOST_DOTS
 from ..column import shown_as
 from ..plan.kept import as_data
 from ..plan.lowering import lowered
-from ..plan.nodes import RootNode
+from ..plan.nodes import Leaf, RootNode
 from ..quantity import Bounds
-from ..sheet import Column, Given, GroupAxis, Sheet
+from ..sheet import Axis, Column, Given, GroupAxis, Sheet
 from .certified import certified
 from .excel import ordered
-from .excel_formulas import Formulas, Places, carried, guard, works_on_ranges
-from .excel_loops import passes_of
+from .excel_formulas import Formulas, Places, carried, carried_name, guard, works_on_ranges
+from .excel_loops import PASSES, Pass, names_in, passes_of
 from .excel_roots import Unrolled, unroll
 from .excel_slopes import Slopes
 from .excel_values import NotPrintable
@@ -112,7 +112,7 @@ class Assembly:
         }
         self.asked = [column for column in sheet.columns if column.name in asked]
         self.passes = passes_of(sheet)
-        self.carried = {k: v for c in whole.columns for k, v in carried(whole, c).items()}
+        self.carried = {k: v for c in whole.columns for k, v in self.carried_for(c).items()}
 
     def told(self) -> dict[str, Any]:
         """All of it but the values, as data."""
@@ -170,9 +170,14 @@ class Assembly:
         for worksheet in dict.fromkeys(self.places[column.name].worksheet for column in given):
             (room,) = (room for room in self.rooms.values() if room.worksheet == worksheet)
             self.notes[worksheet] = room.next()
-        for column in sorted(self.whole.columns, key=self.number):
-            if column.axis is not None and column not in given:
+        for column in self.whole.columns:
+            if column.axis is not None and column not in given and column.name not in self.passes:
                 self.put(column, column.name)
+        for number in range(PASSES + 1):
+            own = self.in_pass(number)
+            for column in self.whole.columns:
+                if column.axis is not None and column.name in own:
+                    self.put(column, own[column.name].name)
         for column in given:
             self.put(column, checked(column.name))
         for name, (leaf, axis) in sorted(self.carried.items()):
@@ -187,7 +192,7 @@ class Assembly:
                     self.places[name] = self.rooms[over.name].next()
             else:
                 row = self.put_steps(unrolled, row)
-        for loop in dict.fromkeys(loop for loop, _, _ in self.passes.values()):
+        for loop in dict.fromkeys(each.loop for each in self.passes.values()):
             row = self.put_passes(loop, row)
         for column in self.asked:
             if column.axis is not None:
@@ -205,9 +210,26 @@ class Assembly:
             grouped = Grouped(words[worded.index(axis.row)], group, tuple(which))
             self.groups[grouped.own.worksheet] = (*self.groups.get(grouped.own.worksheet, ()), grouped)
 
-    def number(self, column: Column) -> int:
-        """Of the pass that a column belongs to: -1 for one that belongs to none."""
-        return self.passes[column.name][2] if column.name in self.passes else -1
+    def rule_of(self, name: str) -> Column:
+        """The column that has the rule of one."""
+        return self.whole[self.passes[name].rule if name in self.passes else name]
+
+    def carried_for(self, column: Column) -> dict[str, tuple[Leaf, Axis]]:
+        """What is repeated for a column, in each pass that it is written for."""
+        found = carried(self.whole, column)
+        own = self.passes.get(column.name)
+        if own is None or own.number != 1:
+            return found
+        every = (
+            (replace(leaf, name=names_in(self.passes, number)(leaf.name)), axis)
+            for number in range(1, PASSES + 1)
+            for leaf, axis in found.values()
+        )
+        return {carried_name(leaf): (leaf, axis) for leaf, axis in every}
+
+    def in_pass(self, number: int) -> dict[str, Pass]:
+        """The columns of a pass, by those that have their rules."""
+        return {each.rule: each for each in self.passes.values() if each.number == number}
 
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""
@@ -266,23 +288,21 @@ class Assembly:
 
     def put_passes(self, loop: str, row: int) -> int:
         """The starts of scalars one below the other, then a table with a row for each pass."""
-        own = {
-            name: number
-            for name, (its, _, number) in self.passes.items()
-            if its == loop and self.whole[name].axis is None
-        }
-        starts = [name for name, number in own.items() if not number]
+        own = [
+            each for each in self.passes.values() if each.loop == loop and self.whole[each.rule].axis is None
+        ]
+        starts = [each for each in own if not each.number]
         table = row + len(starts) + 4
         fields: dict[int, int] = {}
-        for name, number in own.items():
-            if number:
-                at = fields[number] = fields.get(number, 0) + 1
-                place = Place(STEPS, table + number - 1, at)
+        for each in own:
+            if each.number:
+                at = fields[each.number] = fields.get(each.number, 0) + 1
+                place = Place(STEPS, table + each.number - 1, at)
             else:
-                place = Place(STEPS, row + 1 + starts.index(name), 1)
-            scale, zero = self.size(self.whole[name])
-            self.places[name] = replace(place, scale=scale, zero=zero)
-        return table + max(own.values(), default=0) + 3
+                place = Place(STEPS, row + 1 + starts.index(each), 1)
+            scale, zero = self.size(self.whole[each.rule])
+            self.places[each.name] = replace(place, scale=scale, zero=zero)
+        return table + max((each.number for each in own), default=0) + 3
 
     def size(self, column: Column) -> tuple[Fraction, Fraction]:
         """The unit of a column's cells and its zero, in SI."""
@@ -310,25 +330,20 @@ class Assembly:
     def column_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
         """The columns of the sheet, and those that are drawn."""
         for column in self.whole.columns:
-            place = self.places[column.name]
+            if column.name in self.passes:
+                continue
             block = CellBlock(
                 column.name,
                 "given",
                 column.name,
                 column.meaning,
-                place,
+                self.places[column.name],
                 unit=self.unit(column).text,
                 source=column.source,
                 shows=("column", column.name),
             )
             if isinstance(column.rule, Given):
                 yield from self.given_blocks(column, block, formulas)
-            elif column.name in self.passes:
-                loop, of, number = self.passes[column.name]
-                own = replace(
-                    block, kind="step", title=of, of=loop, step=number, source=self.sheet[of].source
-                )
-                yield _computed(own, formulas.column(column))
             elif column.name not in self.judged:
                 yield _computed(
                     replace(block, kind="drawn", shows=("drawn", column.name)), formulas.drawn(column)
@@ -337,12 +352,20 @@ class Assembly:
                 written = formulas.column(column, self.unrolled.get(column.name))
                 kind = "computed" if column.name in self.sheet else "margin"
                 yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
-        for name, (leaf, axis) in sorted(self.carried.items()):
-            column = self.whole[leaf.name]
+        for each in self.passes.values():
+            column, of = self.whole[each.rule], self.sheet[each.of]
             block = CellBlock(
-                name, "carried", leaf.written, f"{column.name} of each row",
-                self.places[name], unit=self.unit(column).text, of=column.name,
-                shows=("carried", column.name, axis.name, str(leaf.index)),
+                each.name, "step", each.of, f"{of.meaning}, {each.when}", self.places[each.name],
+                unit=self.unit(column).text, source=of.source, of=each.loop, step=each.number,
+                shows=("column", each.name),
+            )  # fmt: skip
+            yield _computed(block, formulas.passed(column, each.name, names_in(self.passes, each.number)))
+        for name, (leaf, axis) in sorted(self.carried.items()):
+            column = self.rule_of(leaf.name)
+            block = CellBlock(
+                name, "carried", leaf.written, f"{leaf.name} of each row",
+                self.places[name], unit=self.unit(column).text, of=leaf.name,
+                shows=("carried", leaf.name, axis.name, str(leaf.index)),
             )  # fmt: skip
             yield _computed(block, formulas.carried(leaf))
 

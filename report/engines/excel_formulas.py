@@ -6,7 +6,7 @@ by row: printing is slow, and a report may have a hundred thousand points.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import groupby
@@ -126,6 +126,11 @@ class Formulas:
         writing = Writing(self, column, column.name)
         return writing.rows(writing.drawn(self.maps[column.name]))
 
+    def passed(self, column: Column, name: str, named: Callable[[str], str]) -> tuple[FilledDown, ...]:
+        """The formulas of a column of the first pass of a loop, as another pass names what it names."""
+        writing = Writing(self, column, name, named=named)
+        return writing.rows(writing.formula(self.maps[column.name]))
+
     def check(self, unrolled: Unrolled) -> tuple[FilledDown, ...]:
         """The formulas of the cell that says whether a root can be sought."""
         writing = Writing(self, unrolled.column, unrolled.check.name)
@@ -181,8 +186,15 @@ def guard(bounds: Bounds) -> str:
 class Writing:
     """The formulas of one quantity, being written: cells that change with the row are left open."""
 
-    def __init__(self, formulas: Formulas, column: Column, name: str, plan: Plan | None = None) -> None:
-        self.formulas, self.plan = formulas, plan or formulas.plan
+    def __init__(
+        self,
+        formulas: Formulas,
+        column: Column,
+        name: str,
+        plan: Plan | None = None,
+        named: Callable[[str], str] = str,
+    ) -> None:
+        self.formulas, self.plan, self.called = formulas, plan or formulas.plan, named
         self.sheet, self.layouts, self.places = formulas.sheet, formulas.layouts, formulas.places
         self.column, self.axis = column, column.axis
         self.place = self.places.columns[name]
@@ -234,11 +246,13 @@ class Writing:
             # Among the parts that name a row, its own number is the last.
             steps = [step.name for step in leaf.axis.ordinals]
             return self.places.indices[leaf.axis.name][-1 - steps.index(leaf.index)]
-        return self.repeated(leaf) or self.places.columns[leaf.name]
+        return self.repeated(leaf) or self.places.columns[self.called(leaf.name)]
 
     def repeated(self, leaf: Leaf) -> Place | None:
         """Where cells of another axis are repeated on this one."""
-        return self.places.columns.get(carried_name(leaf)) if leaf.index is not None else None
+        if leaf.index is None:
+            return None
+        return self.places.columns.get(carried_name(replace(leaf, name=self.called(leaf.name))))
 
     def address(self, leaf: Leaf, rows: bool = False) -> str:
         """The address of what a row names, or of all rows that a sum runs over."""
@@ -269,7 +283,7 @@ class Writing:
         """What writes the formulas of the column whose sums leave rows out, for a cell that stands here."""
         if name == self.column.name:
             return self
-        found = Writing(self.formulas, self.formulas.sheet[name], name)
+        found = Writing(self.formulas, self.formulas.sheet[name], name, named=self.called)
         found.here = self.here
         return found
 

@@ -16,10 +16,10 @@ from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, MemberAxis, Sheet
 from .excel_loops import pass_columns, passes_of
-from .excel_values import auxiliary_values, filled, settles, slope_values
+from .excel_values import auxiliary_values, filled, settles, slope_values, with_passes
 from .numpy import extend
 
-__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_passes"]
+__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_first_pass"]
 
 MOST_ROWS = 40_000
 """Rows of a worksheet; a million would fit, but these take half a gigabyte to make, and more to open."""
@@ -70,7 +70,7 @@ def grid(
         A formula has no spreadsheet formula.
     """
     check_rows(values.layouts)
-    drawn = with_passes(drawn, sheet)
+    drawn = with_first_pass(drawn, sheet)
     thinned = drawn.thinned if drawn else ()
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
     whole, layouts = every.sheet, every.layouts
@@ -111,7 +111,8 @@ def grid(
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     slopes = slope_values(values, sheet, told["slopes"])
     steps = dict(chain.from_iterable(own.items() for own in found))
-    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), steps, every, slopes)
+    shown = with_passes(every, sheet)
+    blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), steps, shown, slopes)
     notes = of_data(told["notes"], dict[str, Place])
     words_at = of_data(told["words"], dict[str, tuple[Place, ...]])
     ways = of_data(told["slopes"]["ways"], dict[str, dict[str, tuple[Product, ...]]])
@@ -119,13 +120,12 @@ def grid(
     return Grid(tuple(blocks), axes, drawn, notes, words_at, groups, ways)
 
 
-def with_passes(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:
-    """What is drawn, and the passes of the loops."""
-    there = {column.name for column in drawn.columns} if drawn else set()
-    if there >= passes_of(sheet).keys():
-        return drawn
+def with_first_pass(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:
+    """What is drawn, and the first pass of each loop."""
     own = drawn or Drawn()
-    return replace(own, columns=(*own.columns, *pass_columns(sheet)))
+    there = {column.name for column in own.columns}
+    passes = () if there & passes_of(sheet).keys() else pass_columns(sheet)
+    return replace(own, columns=(*own.columns, *passes)) if passes else drawn
 
 
 def check_rows(layouts: Mapping[str, Layout]) -> None:

@@ -1,13 +1,14 @@
 """Loops as visible cells: each pass is columns of its own, formulas as all others are.
 
 Other engines go on until nothing moves; a workbook has a number of passes, and its own code where they do not
-settle.
+settle. All passes have one rule: the columns of the first are lowered and printed, and every other pass is
+written as that is, with the names of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..column import Column, Formula
@@ -16,7 +17,7 @@ from ..sheet import Loop, Sheet
 if TYPE_CHECKING:
     from sympy import Basic
 
-__all__ = ["PASSES", "pass_columns", "pass_name", "passes_of"]
+__all__ = ["PASSES", "Pass", "names_in", "pass_columns", "pass_name", "passes_of"]
 
 PASSES = 20
 """How many a workbook has; a step that does not come near by a tenth each time would need more."""
@@ -31,24 +32,62 @@ def pass_name(name: str, number: int) -> str:
     return f"{name}_pass_{number}"
 
 
-def passes_of(sheet: Sheet) -> dict[str, tuple[str, str, int]]:
-    """The columns of all passes of a sheet's loops.
+@dataclass(frozen=True)
+class Pass:
+    """A column of a loop in one of its passes."""
 
-    Returns
-    -------
-    mapping of str to (str, str, int)
-        The name of the loop's first iterated column, the column that is passed, and the number of the pass.
+    loop: str
+    """The name of the loop's first iterated column."""
+    of: str
+    """The column that is passed."""
+    number: int
+
+    @property
+    def name(self) -> str:
+        """What its column is called."""
+        return pass_name(self.of, self.number)
+
+    @property
+    def when(self) -> str:
+        """Which pass it is, in words."""
+        return f"pass {self.number}" if self.number else "at the start"
+
+    @property
+    def rule(self) -> str:
+        """The column of the sheet that has its rule: the start, or that of the first pass."""
+        return pass_name(self.of, min(self.number, 1))
+
+
+def passes_of(sheet: Sheet) -> dict[str, Pass]:
+    """The columns of all passes of a sheet's loops, by name."""
+    found = (
+        Pass(loop.name, column.name, number)
+        for loop in sheet.loops
+        for number in range(PASSES + 1)
+        for column in (loop.columns if number else loop.iterated)
+    )
+    return {each.name: each for each in found}
+
+
+def names_in(passes: Mapping[str, Pass], number: int) -> Callable[[str], str]:
+    """What is called in a pass what the first pass, or its start, calls by a name.
+
+    >>> named = names_in({"x_pass_0": Pass("x", "x", 0)}, 3)
+    >>> named("x_pass_0"), named("y")
+    ('x_pass_2', 'y')
     """
-    found: dict[str, tuple[str, str, int]] = {}
-    for loop in sheet.loops:
-        for number in range(PASSES + 1):
-            for column in loop.columns if number else loop.iterated:
-                found[pass_name(column.name, number)] = loop.name, column.name, number
-    return found
+
+    def named(name: str) -> str:
+        own = passes.get(name) if number > 1 else None
+        return name if own is None else pass_name(own.of, own.number + number - 1)
+
+    return named
 
 
-def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
+def pass_columns(sheet: Sheet, last: int = 1) -> tuple[Column, ...]:
     """The passes of a sheet's loops as columns with formulas.
+
+    `last`: up to which pass; those after the first differ from it in their names alone.
 
     Returns
     -------
@@ -57,15 +96,15 @@ def pass_columns(sheet: Sheet) -> tuple[Column, ...]:
     """
     of = passes_of(sheet)
     declared = {column.name: n for n, column in enumerate(sheet.columns)}
-    every = (column for loop in sheet.loops for column in _of_loop(loop))
-    return tuple(sorted(every, key=lambda column: declared[of[column.name][1]]))
+    every = (column for loop in sheet.loops for column in _of_loop(loop, last))
+    return tuple(sorted(every, key=lambda column: declared[of[column.name].of]))
 
 
-def _of_loop(loop: Loop) -> Iterator[Column]:
+def _of_loop(loop: Loop, last: int) -> Iterator[Column]:
     for column in loop.iterated:
         yield _passed(column, 0, _rule(column).start, {})
     before = {column.name for column in loop.iterated}
-    for number in range(1, PASSES + 1):
+    for number in range(1, last + 1):
         now = {name: pass_name(name, number - (name in before)) for name in loop.names}
         for column in loop.formulas:
             yield _passed(column, number, _rule(column).expression, now)
@@ -83,12 +122,10 @@ def _passed(column: Column, number: int, value: Basic, now: Mapping[str, str]) -
     name = pass_name(column.name, number)
     own = replace(column, name=name)
     equation = Equation("", (own.cell, _renamed(value, now)), "", Kind.DEFINITION, "a pass")
-    meaning = f"{column.meaning}, pass {number}" if number else f"{column.meaning}, at the start"
     requires = tuple((_renamed(condition, now), says) for condition, says in column.requires)
     return replace(
         own,
         rule=Formula(equation),
-        meaning=meaning,
         requires=requires,
         limits=(),
         display=f"like {column.name}",

@@ -18,11 +18,21 @@ from ..plan.adjoints import Adjoint, Term
 from ..plan.kept import of_data
 from ..plan.slopes import NodeDerivatives, with_unknowns
 from ..sheet import Sheet
+from .excel_loops import PASSES, pass_name, passes_of
 from .kernels import Array
-from .numpy import Program, parts
+from .numpy import Laid, Program, again, parts
 from .numpy_adjoints import computed
 
-__all__ = ["READY", "SETTLED", "NotPrintable", "auxiliary_values", "filled", "settles", "slope_values"]
+__all__ = [
+    "READY",
+    "SETTLED",
+    "NotPrintable",
+    "auxiliary_values",
+    "filled",
+    "settles",
+    "slope_values",
+    "with_passes",
+]
 
 READY = "ready"
 """What the first cell says where all precedents have values."""
@@ -106,6 +116,31 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     shown |= {name: _shown(cells[name], alone if single else ready) for name, _, single in root["cells"]}
     check = (READY if code == Status.OK else CODES[Status(int(code))] for code in codes)
     return shown | {root["check"]: tuple(check)}
+
+
+def with_passes(values: Values, sheet: Sheet) -> Values:
+    """The values with those of the passes of a sheet's loops that have no columns of their own.
+
+    `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`.
+    """
+    first = [each for each in passes_of(sheet).values() if each.number == 1]
+    if not first:
+        return values
+    begun = {
+        pass_name(column.name, 0): pass_name(column.name, 1)
+        for loop in sheet.loops
+        for column in loop.iterated
+    }
+    ours = {each.name for each in first}
+    program = Program.of(values.sheet, tuple(name for name in values.value if name not in ours))
+    laid, here = Laid(values.sheet, dict(values.layouts)), values
+    value, status = dict(values.value), dict(values.status)
+    for number in range(2, PASSES + 1):
+        here = again(here, begun, program, laid)
+        for each in first:
+            name = pass_name(each.of, number)
+            value[name], status[name] = here.value[each.name], here.status[each.name]
+    return replace(values, value=value, status=status)
 
 
 def settles(values: Values, root: Mapping[str, Any], found: Mapping[str, Sequence[float | str]]) -> bool:

@@ -26,7 +26,7 @@ from .numpy_loop import LoopProgram, Settling
 from .numpy_root import RootProgram
 from .numpy_rows import Kept, chosen, in_groups
 
-__all__ = ["Laid", "Program", "evaluate", "extend", "parts"]
+__all__ = ["Laid", "Program", "again", "evaluate", "extend", "parts"]
 
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
@@ -570,6 +570,29 @@ def extend(values: Values, columns: Sequence[Column], data: Mapping[str, Any]) -
     arrays = _arrays(data)
     layouts = lay_out(sheet, values.given_labels, _counts(sheet, {**values.value, **arrays}))
     return _Run(Program.of(sheet, tuple(values.value)), Laid(sheet, layouts), arrays, values).values()
+
+
+def again(values: Values, taken: Mapping[str, str], program: Program, laid: Laid) -> Values:
+    """Compute columns again that are computed, with others in the places of what they rest on.
+
+    Parameters
+    ----------
+    values : Values
+        All columns of the sheet.
+    taken : mapping of str to str
+        Of known columns, which others are taken for them.
+    program : Program
+        Of the sheet, of which all columns are known but those that are computed again.
+    laid : Laid
+        The sheet over its rows.
+    """
+    names = {name: taken.get(name, name) for name in program.known}
+    held = replace(
+        values,
+        value={name: values.value[own] for name, own in names.items()},
+        status={name: values.status[own] for name, own in names.items()},
+    )
+    return _Run(program, laid, {}, held).values()
 
 
 def parts(program: Program, values: Values, laid: Laid | None = None) -> dict[str, Array]:

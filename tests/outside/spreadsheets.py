@@ -24,7 +24,8 @@ from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
 from loopsheet.report.engines.excel_formulas import _SETTLED
-from loopsheet.report.engines.excel_loops import PASSES, pass_name
+from loopsheet.report.engines.excel_loops import PASSES, pass_name, passes_of
+from loopsheet.report.engines.excel_values import with_passes
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
 from loopsheet.report.result.result import Report
@@ -92,7 +93,8 @@ class Delivered:
                 ]
                 fixed = column.name in self.counts and cells[0] != block.values[0]
                 data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
-        values = engine.evaluate(self.whole, self.report.values.given_labels, data, self.program)
+        first = engine.evaluate(self.whole, self.report.values.given_labels, data, self.program)
+        values = with_passes(first, self.report.sheet)
         changed = {name for (name, row), value in edits.items() if value != self.grid[name].values[row]}
         return self._as_counted(values, changed)
 
@@ -256,15 +258,17 @@ def compare(
         own = delivered.whole.by_name.get(column.name.removeprefix("plotted_"), column)
         return {own.name, *(each.name for each in delivered.whole.ancestors(own))}
 
-    for column in delivered.whole.columns:
+    rules = {column.name: column for column in delivered.whole.columns}
+    rules |= {name: rules[each.rule] for name, each in passes_of(delivered.report.sheet).items()}
+    for its, column in rules.items():
         given = isinstance(column.rule, Given)
-        place = delivered.grid[checked(column.name) if given else column.name].place
-        name, _, a_pass = column.name.removeprefix("plotted_").partition("_pass_")
-        drawn = not given and not a_pass and column.name not in sheet
+        place = delivered.grid[checked(its) if given else its].place
+        name, _, a_pass = its.removeprefix("plotted_").partition("_pass_")
+        drawn = not given and not a_pass and its not in sheet
         allowed = largest * (lost if name in MISFITS else 1)
         if a_pass:  # while a loop looks for its place, a pass may double what rounding made of the last one
             allowed *= 2 ** int(a_pass)
-        known, codes = values.value[column.name], values.status[column.name]
+        known, codes = values.value[its], values.status[its]
         if not known.size:
             # A count that is refused leaves no rows; those of the workbook say so.
             known, codes = np.full(place.rows, np.nan), np.full(place.rows, Status.INPUT)
@@ -278,7 +282,7 @@ def compare(
         for row, (value, status) in enumerate(zip(known, codes, strict=True)):
             address = place.cell(row, place.worksheet).replace("$", "")
             cell, code = read[place.worksheet].get(address), CODES[Status(int(status))]
-            where = f"{column.name}, {place.worksheet}!{address}"
+            where = f"{its}, {place.worksheet}!{address}"
             found.cells += 1
             if status != Status.OK:
                 expected = "#N/A" if drawn else code
