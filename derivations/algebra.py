@@ -66,8 +66,6 @@ from sympy import (
 from .facts import Facts
 from .sums import in_terms
 
-__all__ = ["Solved", "definite", "in_powers", "is_continuous", "is_root", "settle", "solve_for", "vanishes"]
-
 NOTHING = Facts()
 
 _LARGEST = 3000

@@ -17,24 +17,6 @@ from .equation import Derivation, Equation, Kind, Step, define
 from .rebuilt import evaluated
 from .symbols import VOCABULARY
 
-__all__ = [
-    "ENTRIES",
-    "ISOLATED",
-    "Lambda",
-    "end",
-    "log_form",
-    "log_speeds",
-    "logarithm",
-    "reciprocal",
-    "root_form",
-    "slope",
-    "slope_law",
-    "starting_value",
-    "turning",
-    "u",
-    "u_turn",
-]
-
 V, E, XP = (VOCABULARY[name] for name in ("v", "e", "x_p"))
 alpha, beta, u, u_turn, Lambda = VOCABULARY.plain("alpha beta u u_turn Lambda")
 

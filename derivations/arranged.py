@@ -16,8 +16,6 @@ from .few_rows import FewRows, Statement
 from .space import Space
 from .vocabulary import Vocabulary
 
-__all__ = ["Arranged", "Sides", "symbols_of"]
-
 
 @dataclass(frozen=True)
 class Sides:

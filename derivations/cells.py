@@ -14,8 +14,6 @@ from sympy import Expr, Indexed, IndexedBase, Integer, Integral, Or, Symbol
 
 from .reductions import REDUCTIONS
 
-__all__ = ["Cells", "running"]
-
 
 def running(expressions: Iterable[Any]) -> list[tuple[Any, ...]]:
     """The limits of all reductions and integrals: what runs, then from where to where."""

@@ -13,8 +13,6 @@ from typing import Any
 from sympy import Add, DiracDelta, Expr, Function, Integer, Mul, Piecewise, Pow, Symbol, diff, log
 from sympy.core.function import ArgumentIndexError
 
-__all__ = ["beside_corners", "differentiated"]
-
 _ZERO, _ONE = Integer(0), Integer(1)
 
 

@@ -47,18 +47,6 @@ from .text import text
 from .unit_text import UnitError, coherent, parse_open
 from .vocabulary import Vocabulary
 
-__all__ = [
-    "PURE",
-    "Dimension",
-    "DimensionError",
-    "Dimensions",
-    "dimension_of_unit",
-    "mixed",
-    "power",
-    "product",
-    "text_of",
-]
-
 Dimension = Mapping[str, Expr]
 """Exponents of the base units; one that is zero is left out."""
 

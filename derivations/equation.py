@@ -19,8 +19,6 @@ from .vocabulary import NO_WORDS, Vocabulary
 if TYPE_CHECKING:
     from sympy import Expr, Rel
 
-__all__ = ["Derivation", "Equation", "Erratum", "Kind", "Ledger", "Step", "define"]
-
 
 class Kind(Enum):
     """Why an equation stands in the ledger."""

@@ -24,20 +24,6 @@ from .space import Space, short
 from .text import Wording
 from .vocabulary import Quantity, Vocabulary
 
-__all__ = [
-    "Check",
-    "Citation",
-    "check_citation",
-    "check_count",
-    "check_determined",
-    "check_missing",
-    "check_overlap",
-    "check_range",
-    "check_spurious",
-    "check_units",
-    "check_whose",
-]
-
 Check = Callable[[Ledger], "Erratum | None"]
 Say = Callable[[Any], str]
 _P = ParamSpec("_P")

@@ -41,8 +41,6 @@ from sympy.logic.boolalg import BooleanAtom
 
 from .reductions import REDUCTIONS, Greatest, Least, Median
 
-__all__ = ["UNDEFINED", "NotEvaluable", "Tape", "is_real"]
-
 UNDEFINED = (ZeroDivisionError, ValueError, OverflowError, TypeError, IndexError)
 """What running a program raises where an expression has no value."""
 

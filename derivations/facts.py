@@ -11,8 +11,6 @@ from typing import Any
 
 from sympy import Abs, Add, Expr, Integer, Pow, Rel, Symbol, factor
 
-__all__ = ["Facts"]
-
 
 class Facts:
     """The signs that follow from conditions, beyond the assumptions that symbols carry.

@@ -21,8 +21,6 @@ from .evaluation import NotEvaluable, Tape
 from .reductions import Member, OrderStatistic
 from .sums import in_terms
 
-__all__ = ["FewRows", "Statement"]
-
 _FEWEST, _MOST, _CHOICES = 3, 12, 500
 """How many rows a column gets at least and at most, and how many choices of all sizes are tried."""
 

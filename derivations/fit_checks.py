@@ -18,23 +18,6 @@ from . import global_fit as fit
 from .equation import Derivation, Equation, Kind, define
 from .symbols import VOCABULARY, k
 
-__all__ = [
-    "FREE",
-    "LEDGER",
-    "deviation",
-    "leverage",
-    "projected",
-    "squares_T",
-    "taken_off",
-    "trend",
-    "trend_by_depth",
-    "trend_of_approach",
-    "trend_of_depth",
-    "trend_with_exponent",
-    "uncertain_trend",
-    "without",
-]
-
 XM, XP, W, D, R, LAM, H, Z, A_K, G, T, GAMMA = (
     VOCABULARY[name]
     for name in ("x_m", "x_p", "W", "D", "R", "lam", "h", "z_R", "alpha_k", "G", "T", "gamma")

@@ -20,8 +20,6 @@ from .fit_checks import LEDGER as CHECKS
 from .soft_impact import law_c, x
 from .symbols import VOCABULARY, F_of, k
 
-__all__ = ["LEDGER", "beside", "further", "peak", "uncertain"]
-
 XM, XP, W, R, CP, UC, DC, UN = (
     VOCABULARY[name] for name in ("x_m", "x_p", "W", "R", "Cprime", "u_C", "dC", "u_new")
 )

@@ -9,21 +9,6 @@ from .equation import Equation, Kind, define
 from .reductions import Median
 from .symbols import VOCABULARY, p, s
 
-__all__ = [
-    "ENTRIES",
-    "F_ref",
-    "F_scale",
-    "N",
-    "abscissa",
-    "mean",
-    "middle",
-    "n_pairs",
-    "top",
-    "x_ref",
-    "x_scale",
-    "x_top",
-]
-
 XM, ALPHA, CP, XTOP = (VOCABULARY[name] for name in ("x_m", "alpha", "Cprime", "x_top"))
 x, x_top, N, x_ref, F_ref, alpha_mean, alpha_median = VOCABULARY.plain(
     "x x_top N x_ref F_ref alpha_mean alpha_median"

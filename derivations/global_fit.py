@@ -21,47 +21,6 @@ from .soft_impact import LEDGER as PAPER
 from .soft_impact import ratio_step, v, x_m, x_m_of_test
 from .symbols import VOCABULARY, k
 
-__all__ = [
-    "EO",
-    "LEDGER",
-    "VO",
-    "alpha_step",
-    "approach",
-    "birge",
-    "bowl",
-    "by_adjusted",
-    "by_exponent",
-    "by_restitution",
-    "by_scatter",
-    "by_speed",
-    "coefficient",
-    "depth",
-    "depth_scale",
-    "determinant",
-    "exponent",
-    "first_exponent",
-    "force",
-    "force_start",
-    "force_step",
-    "in_normal_matrix",
-    "least",
-    "misfit",
-    "multiplier",
-    "on_curve",
-    "over_tests",
-    "products",
-    "restitution",
-    "restitution_step",
-    "speed",
-    "speed_scale",
-    "speed_step",
-    "speeds",
-    "squares",
-    "squares_D",
-    "squares_X",
-    "weight",
-]
-
 # fmt: off
 V, E, XM, XP = (VOCABULARY[name] for name in ("v", "e", "x_m", "x_p"))
 VO, EO, XO, UV, UE, UX, D, BV, BE, W, R, LAM = (

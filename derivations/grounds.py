@@ -21,8 +21,6 @@ from .evaluation import UNDEFINED, NotEvaluable, Tape
 from .reductions import REDUCTIONS
 from .sums import in_terms
 
-__all__ = ["behind", "circle", "is_assumed", "says", "stated", "supported"]
-
 _DIGITS, _POINTS = 30, 3
 _ALIKE = mpmath.mpf(10) ** -20
 

@@ -34,8 +34,6 @@ from sympy import (
 from .equation import Derivation, Equation, Kind, Step
 from .normal_equation import normal_equation
 
-__all__ = ["FitQuantity", "LeastSquares"]
-
 _APART = Integer(2**45)
 """What is left of a slope, as a part of it, is more than rounding from one over this on. (Its square has more
 digits than a spreadsheet reads.)"""

@@ -6,8 +6,6 @@ from sympy import Expr, Integer
 
 from .equation import Equation, Kind
 
-__all__ = ["normal_equation"]
-
 
 def normal_equation(derivative: Expr, name: str, given: str = "") -> Equation:
     """The sum of squares is least where its derivative by a parameter vanishes.

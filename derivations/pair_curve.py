@@ -14,8 +14,6 @@ from .equation import Derivation, Equation
 from .power_law_fit import log_F
 from .symbols import VOCABULARY, F_of, k, q
 
-__all__ = ["entries", "log_force", "on_curve", "peak"]
-
 V, XM, CP, X, F, Y = (VOCABULARY[name] for name in ("v", "x_m", "Cprime", "x", "F", "Y"))
 x, C, alpha, m_red, F_ref = VOCABULARY.plain("x C alpha m_red F_ref")
 

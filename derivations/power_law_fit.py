@@ -14,20 +14,6 @@ from .equation import Derivation, Equation, Kind, Step, define
 from .normal_equation import normal_equation
 from .symbols import VOCABULARY, q
 
-__all__ = [
-    "ENTRIES",
-    "alpha_lin",
-    "alpha_log",
-    "intercept",
-    "lin_scale",
-    "log_F",
-    "log_scale",
-    "log_x",
-    "mean_X",
-    "mean_Y",
-    "size",
-]
-
 X, Y, x, F = (VOCABULARY[name] for name in ("X", "Y", "x", "F"))
 a, b, Xmean, Ymean, C, C_b, alpha, x_ref, F_ref = VOCABULARY.plain("a b Xmean Ymean C C_b alpha x_ref F_ref")
 size = Symbol("n_points", integer=True, positive=True)

@@ -27,13 +27,6 @@ from .text import text
 from .together import conflict
 from .vocabulary import NO_WORDS, Vocabulary
 
-__all__ = [
-    "POINTS",
-    "check_step",
-    "prove",
-    "prove_entry",
-]
-
 NOT_REDUCED = (
     "the numbers agree, but the residual was not reduced to zero; what may help: say what is positive, claim "
     "it in steps, or claim of both sides what undoes a root or an inverse function, as a square or a tangent"

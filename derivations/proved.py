@@ -8,8 +8,6 @@ from enum import Enum
 
 from .equation import Equation, Step
 
-__all__ = ["DIGITS", "IDENTITY", "Proof", "ProofStatus", "StepProof", "enumerated", "said"]
-
 DIGITS = 50
 """To how many an equation is evaluated."""
 IDENTITY = "nothing, it is an identity"

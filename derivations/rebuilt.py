@@ -10,8 +10,6 @@ from sympy.core.relational import Relational
 
 from .reductions import REDUCTIONS
 
-__all__ = ["evaluated", "in_absolute_values", "rebuilt", "renamed", "replaced"]
-
 _COMPARED = (Max, Min, Relational)
 """What sympy decided by comparing its parts when it was first made."""
 _DECIDED = (Function, Piecewise, Pow)

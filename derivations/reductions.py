@@ -7,18 +7,6 @@ from typing import ClassVar
 from sympy import Expr, Function, Mul, Sum
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
-__all__ = [
-    "REDUCTIONS",
-    "Greatest",
-    "Least",
-    "Median",
-    "Member",
-    "OrderStatistic",
-    "member_of",
-    "never_negative",
-    "taken_of",
-]
-
 
 class OrderStatistic(ExprWithLimits):  # type: ignore[misc] # sympy has no types
     """What stands at one place of the terms in the order of their size, or the mean of what stands at two.

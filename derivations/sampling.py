@@ -17,8 +17,6 @@ from .reductions import Greatest, OrderStatistic
 from .space import SampledRows, Space, apart
 from .system import Refused, System
 
-__all__ = ["AGREES", "POINTS", "Outcome", "examine", "magnitude"]
-
 POINTS = 20
 """How many seeded points of the domain every claim is evaluated at; fewer prove nothing."""
 AGREES = mpmath.mpf(10) ** (10 - DIGITS)

@@ -21,8 +21,6 @@ from .proved import DIGITS
 from .sampling import AGREES, magnitude
 from .vocabulary import Vocabulary
 
-__all__ = ["Sought", "are_impossible", "seek"]
-
 _NUDGE = mpmath.mpf(10) ** -20
 """Relative step of the differences that a search takes for derivatives."""
 _TRIES, _SEARCHES, _STEPS, _SLOW = 1000, 4, 15, 3

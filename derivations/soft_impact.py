@@ -11,24 +11,9 @@ from sympy import And, Expr, Integer, Integral, Le, Piecewise, Rational, pi
 from sympy.core.parameters import evaluate
 
 from . import alpha_root, errata, generated_points, pair_curve, power_law_fit
-from .alpha_root import Lambda, log_speeds, logarithm, reciprocal, root_form, starting_value, turning, u
+from .alpha_root import reciprocal, root_form, u
 from .equation import Derivation, Equation, Kind, Ledger, Step, define
-from .generated_points import F_scale, N, abscissa, mean, n_pairs, top, x_scale, x_top
 from .symbols import VOCABULARY, F_LN_of, F_of, k
-
-# fmt: off
-__all__ = [  # noqa: RUF022 - symbols, the equations in their order, what other modules add, the ledger
-    "V", "E", "XP", "XM", "CP", "v", "e", "x_p", "x_m", "Cprime", "C", "C_LN", "F", "alpha", "beta", "m_red",
-    "m_1", "m_2", "mu", "x", "d", "rho", "n",
-    "eq1", "eq2", "eq3", "law_c", "law_r", "eq4", "eq5", "energy_c", "eq6", "energy_r", "eq7", "eq8",
-    "continuity", "eq9", "eq10a", "eq10b", "eq10c", "ratio", "eq11", "eq12a", "eq12b", "eq12c", "eq12d",
-    "eq12e", "volume", "ball_mass", "mass_ratio", "immobile", "reduced_by_ratio", "immobile_mass",
-    "x_m_of_test", "Cprime_of_test", "ratio_step",
-    "u", "Lambda", "reciprocal", "root_form", "logarithm", "log_speeds", "turning", "starting_value",
-    "N", "n_pairs", "x_top", "top", "abscissa", "mean", "x_scale", "F_scale",
-    "LEDGER",
-]
-# fmt: on
 
 V, E, XP, XM, CP = (VOCABULARY[name] for name in ("v", "e", "x_p", "x_m", "Cprime"))
 v, e, x_p, x_m, Cprime = VOCABULARY.plain("v e x_p x_m Cprime")

@@ -15,8 +15,6 @@ from .reductions import REDUCTIONS
 from .text import text
 from .vocabulary import Vocabulary
 
-__all__ = ["SampledRows", "Space", "apart", "short"]
-
 _DIGITS = 6
 """Of a number in a sentence."""
 _FEW, _MANY = 5, 1000

@@ -26,8 +26,6 @@ from sympy import (
     zoo,
 )
 
-__all__ = ["in_terms"]
-
 _MOST_WRITTEN = 30
 """A sum of known size, up to this many terms, is written out."""
 

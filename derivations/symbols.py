@@ -6,8 +6,6 @@ from sympy import Function, Symbol
 
 from .vocabulary import Quantity, Vocabulary
 
-__all__ = ["VOCABULARY", "F_LN_of", "F_of", "k", "p", "q", "s"]
-
 VOCABULARY = Vocabulary(
     Quantity(
         "v",

@@ -18,8 +18,6 @@ from .sums import in_terms
 from .text import Wording
 from .vocabulary import Vocabulary
 
-__all__ = ["Refused", "System", "prepare"]
-
 Told = Callable[[Any], str]
 """How an expression is written in the words of the ledger."""
 

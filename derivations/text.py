@@ -33,8 +33,6 @@ from .equation import Equation
 from .reductions import OrderStatistic, member_of, taken_of
 from .vocabulary import Vocabulary, subscripted
 
-__all__ = ["Wording", "flat", "text", "text_of_equation"]
-
 _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 """How tightly an expression holds together; a looser one gets parentheses inside a tighter one."""
 

@@ -21,9 +21,6 @@ from .proved import enumerated
 from .reductions import REDUCTIONS
 from .search import are_impossible, seek
 
-__all__ = ["Contradiction", "conflict"]
-
-
 _NEARLY_ZERO = Rational(1, 10**6)
 """Where a quantity that goes to zero is looked at."""
 

@@ -16,22 +16,6 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, NoReturn
 
-__all__ = [
-    "COMMON",
-    "ParsedUnit",
-    "UnitError",
-    "coherent",
-    "degrees",
-    "examples",
-    "is_pure",
-    "micro",
-    "misfit",
-    "of_differences",
-    "parse_open",
-    "parse_unit",
-    "well_named",
-]
-
 _LONGEST = 60
 _HIGHEST, _BELOW = 60, 12
 """The largest power, and the largest number below its stroke: m^9999 would make ten thousand digits.

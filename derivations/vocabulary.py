@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sympy import Expr, Indexed, IndexedBase, Rel, Symbol
 
-__all__ = ["NO_WORDS", "Quantity", "Vocabulary", "amiss", "spelt", "subscripted", "with_index"]
-
 _SMALL = "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa varkappa lambda mu nu"
 _SMALL += " xi pi varpi rho varrho sigma varsigma tau upsilon phi varphi chi psi omega"
 _CAPITAL = "Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"

@@ -9,8 +9,6 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Set
 
-__all__ = ["NO_IF", "OF_SYMPY", "at_once"]
-
 _WORDS = {"constant", "fit", "given", "let", "measured", "pairs", "root", "unknown"}
 """What declares a name."""
 _OF_NUMBERS = {"cmath", "math", "numpy", "scipy", "statistics"}

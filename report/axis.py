@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from sympy import Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Axis", "CountedAxis", "GroupAxis", "MemberAxis", "PairAxis", "RepeatAxis", "plural", "singular"]
-
 _ALIKE = ("series", "species")
 """Words of which there are as many of one as of several."""
 _LONGER = "(?:ss|x|z|ch|sh|lens|gas|bias)"

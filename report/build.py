@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .views.issued import Issued
     from .workbook import FigureSpec
 
-__all__ = ["Built", "build", "built", "formats_again", "parse_formats"]
-
 DEFAULT_FORMATS = tuple(each for each in FORMATS if each not in ON_REQUEST)
 
 

@@ -20,21 +20,6 @@ if TYPE_CHECKING:
     from .impacts.law import ForceLaw
     from .result.result import Report
 
-__all__ = [
-    "Asked",
-    "NoImpacts",
-    "NotTogether",
-    "asked_for",
-    "card",
-    "contacts_of",
-    "course",
-    "curve",
-    "drop_at",
-    "drops_of",
-    "swept",
-    "taken",
-]
-
 POISSON = 0.3
 """Poisson's ratio of most metals, where none is given."""
 _CURVES = (("alpha_eiv", "C_eiv"), ("alpha_log", "C_log"), ("alpha_lin", "C_lin"))

@@ -12,11 +12,6 @@ from .sheet import Axis, Column, Formula, Given, Sheet, SheetError
 if TYPE_CHECKING:
     from sympy import Expr
 
-__all__ = [
-    "BARS", "BLUE", "COLOURS", "INK", "IN_A_ROW", "MOST_DOTS", "MOST_GROUPS", "MOST_PANELS", "STYLES",
-    "VERMILION", "Chart", "Drawn", "Series", "copied", "drawn", "series_of", "shade", "with_copies",
-]  # fmt: skip
-
 INK, VERMILION, BLUE = "#1a1a1a", "#d55e00", "#0072b2"
 COLOURS = (VERMILION, BLUE, "#009e73", "#cc79a7")
 """Of Okabe and Ito: told apart by every eye. `COLOURS`: of several series, one after the other."""

@@ -22,10 +22,8 @@ from .verbs import VERBS
 from .verbs.common import BUG, OK, print_checks
 
 if TYPE_CHECKING:
+    from .messages.diagnostics import Check
     from .messages.errors import LoopsheetError, UsageError
-    from .result.findings import Check
-
-__all__ = ["main"]
 
 _DESCRIPTION = (
     "Reports whose every number is traced to an equation, recomputed and compared with its publication."
@@ -171,9 +169,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    from .messages.diagnostics import visible
+    from .messages.diagnostics import Check, visible
     from .messages.errors import LoopsheetError, UsageError, diagnose
-    from .result.findings import Check
 
     options = argparse.Namespace(traceback=False)
     try:

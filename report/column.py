@@ -24,22 +24,6 @@ if TYPE_CHECKING:
     from ..derivations.equation import Equation
     from ..derivations.unit_text import ParsedUnit
 
-__all__ = [
-    "Column",
-    "Formula",
-    "Given",
-    "Iterated",
-    "Limit",
-    "Mentioned",
-    "Reference",
-    "Root",
-    "Rule",
-    "SheetError",
-    "shown_as",
-    "shown_in",
-    "written_in",
-]
-
 
 class SheetError(ValueError):
     """A workbook declares something that cannot be a sheet.

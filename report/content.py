@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sympy import Basic
 
-__all__ = ["Untold", "content"]
-
 _OURS = {"sympy", __name__.partition(".")[0]}
 
 

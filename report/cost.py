@@ -7,8 +7,6 @@ from collections.abc import Collection, Mapping
 from .cells.layout import Layout, how_large
 from .sheet import Sheet
 
-__all__ = ["told"]
-
 ALWAYS = 6.0
 """Seconds that every build takes: proofs, pictures, the judge. Measured on two cores, as are the others."""
 EACH = 5e-6

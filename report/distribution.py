@@ -16,8 +16,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .laws import Law
 
-__all__ = ["DIVISORS", "DOMINANT", "LEVEL", "MOST_DOF", "PARTS", "SCATTER", "SHARES", "Error", "Shape"]
-
 LEVEL = 0.95
 """The coverage probability that is stated where nobody asks for another; 0.9545 is another one."""
 SCATTER = "scatter"

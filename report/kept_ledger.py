@@ -13,8 +13,6 @@ from .document.parts import Written
 from .document.written import gone, written
 from .partly import partly
 
-__all__ = ["ToldEquation", "known_equation", "known_ledger", "told_equation", "told_ledger"]
-
 _WORDS = ("number", "part", "title", "because")
 
 

@@ -29,8 +29,6 @@ from .sheet import Sheet, with_parents
 from .which_workbook import is_shipped
 from .workbook import Workbook
 
-__all__ = ["drawn_of", "ledger_of", "of_shipped", "sheet_of"]
-
 _KINDS = {kind.__name__: kind for kind in (Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis)}
 
 

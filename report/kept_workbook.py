@@ -14,8 +14,6 @@ from .partly import partly
 from .plan.kept import as_data, of_data
 from .workbook import Either, FigureSpec, Measured, Parameter, RowTable, SquareSum, TableSpec, Workbook
 
-__all__ = ["known_workbook"]
-
 
 @dataclass(frozen=True)
 class _Told:

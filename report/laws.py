@@ -15,8 +15,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Exponential", "Law", "Samples", "TruncatedNormal"]
-
 Array = NDArray[np.float64]
 
 _NODES = 200

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike, NDArray
 
@@ -20,9 +21,7 @@ from .messages.errors import LoopsheetError, listing, suggest
 from .quantity import behind
 from .result.findings import checks
 from .study import Study
-from .views.escape import Markup, html
-
-__all__ = ["Estimates", "Loaded", "load"]
+from .views.escape import html
 
 Array = NDArray[np.float64]
 MOST = 50

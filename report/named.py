@@ -14,8 +14,6 @@ from .column import Column, Iterated, Reference, Root, SheetError
 from .messages.errors import close
 from .quantity import Bounds
 
-__all__ = ["Named", "member", "name_of", "references", "summed_over", "within"]
-
 
 class Named:
     """What symbols mean in a sheet.

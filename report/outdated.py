@@ -10,8 +10,6 @@ from .inputs.folders import PAPER, changed, is_report, output
 from .messages.diagnostics import Check
 from .messages.errors import Location, listing
 
-__all__ = ["outdated", "outdated_sources"]
-
 
 def outdated(folder: Path, files: Iterable[str]) -> Iterator[Check]:
     """A warning for each of them.

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..derivations.equation import Ledger
     from .workbook import Workbook
 
-__all__ = ["follows_from_its_bytes", "own_workbook", "place_of", "place_of_column"]
-
 _PURE = {"__future__", "collections", "dataclasses", "fractions", "functools", "itertools", "math", "typing"}
 _PURE |= {"loopsheet", "mpmath", "sympy"}
 """What a workbook may import and still be the same whenever it is run."""

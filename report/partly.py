@@ -11,8 +11,6 @@ from dataclasses import fields
 from functools import cache, cached_property
 from typing import Any, TypeVar
 
-__all__ = ["is_partly", "known", "partly"]
-
 T = TypeVar("T")
 
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from .engines.exact import ExactValues
     from .sheet import Sheet
 
-__all__ = ["Prepared", "sheet_data"]
-
 
 def sheet_data(sheet: Sheet, inputs: Inputs) -> dict[str, Any]:
     """What a sheet is given, in SI as exact fractions: a list for a measured column, one for a parameter.

@@ -9,8 +9,6 @@ from typing import Any
 from ..derivations.equation import Derivation, Erratum, Ledger
 from ..derivations.proved import Proof, ProofStatus, StepProof
 
-__all__ = ["as_data", "of_data", "proved"]
-
 Algebra = tuple[tuple[Proof, ...], tuple[Erratum, ...]]
 """A proof of each equation, and the errata of the print they are about."""
 

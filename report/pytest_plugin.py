@@ -18,19 +18,9 @@ import pytest
 from _pytest.mark.expression import Expression
 
 if TYPE_CHECKING:
+    from .messages.diagnostics import Check
     from .messages.errors import Diagnostic
-    from .result.findings import Check
     from .study import Study
-
-__all__ = [
-    "CheckItem",
-    "KindCollector",
-    "ReportFile",
-    "pytest_addoption",
-    "pytest_collect_file",
-    "pytest_configure",
-    "pytest_terminal_summary",
-]
 
 _LARGEST = 250_000
 """Bytes. A report.toml of ours is smaller; another tool's larger one is left alone."""
@@ -193,14 +183,15 @@ class FolderChecks:
         return {proof.equation.label: of_proof(proof, self.study.inputs) for proof in found}
 
     def _not_run(self, name: str) -> Check:
-        from .result.findings import Check
+        from .messages.diagnostics import Check
 
         assert self._refused is not None
         said = f"{self._refused.message}; {self._refused.hint}"
         return Check("workbook", name, True, said, self._refused.at, skipped=True)
 
     def _engine(self, name: str, every: bool) -> Check:
-        from .result.findings import Check, of_engine
+        from .messages.diagnostics import Check
+        from .result.findings import of_engine
 
         if name not in self._engines:
             judged = self.study.engines if every else self.study.numpy

@@ -18,9 +18,6 @@ from .distribution import Error, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["LARGEST", "POISSON", "SMALLEST", "Bounds", "Printed", "behind", "span", "there"]
-
-
 LARGEST = 2**1024 - 2**970
 """What is no smaller than this rounds to no finite double."""
 SMALLEST = 2.0**-1022

@@ -11,8 +11,6 @@ from .messages.errors import InputError, Location, diagnose
 from .own_workbook import place_of, place_of_column
 from .sheet import Given, Sheet, SheetError
 
-__all__ = ["of_sheet", "refuse_what_is_misnamed", "refuse_what_is_missing"]
-
 
 def of_sheet(inputs: Inputs, error: SheetError) -> InputError:
     """What is wrong with the sheet of a user's own workbook, with its place there."""

@@ -32,28 +32,6 @@ if TYPE_CHECKING:
     from .sheet import Column, Sheet
     from .workbook import Workbook
 
-__all__ = [
-    "Step",
-    "book",
-    "compared",
-    "computing",
-    "drawn",
-    "evaluated",
-    "for_a_grid",
-    "judged",
-    "of_cells",
-    "plotted",
-    "prepared",
-    "program",
-    "refereed",
-    "refereed_values",
-    "refuse_too_many_rows",
-    "shown",
-    "silent",
-    "uncertain",
-    "words_beside",
-]
-
 Step = Callable[[str], None]
 """Told what is begun, for whoever watches."""
 Keep = Callable[[str, Callable[[], Any]], Any]

@@ -8,8 +8,6 @@ from ..derivations.text import text_of_equation
 from .cells import units
 from .sheet import Given, Root, Sheet, SheetError
 
-__all__ = ["refuse_what_is_not_stated"]
-
 
 def refuse_what_is_not_stated(sheet: Sheet, ledger: Ledger) -> None:
     """A column computes what the ledger says, so that there is nothing that no proof looks at.

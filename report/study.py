@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from .result.agreement import Agreement
     from .result.result import Report
 
-__all__ = ["Recipe", "Study"]
-
 T = TypeVar("T")
 Recipe = tuple[Path, Find, dict[str, bytes]]
 """A folder, how its workbook is found, and its files."""

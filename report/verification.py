@@ -17,16 +17,14 @@ from .inputs.inputs import Find
 from .machine.kept import nothing_kept
 from .machine.scratch import scratch
 from .machine.staging import half_moved
+from .messages.diagnostics import Check
 from .messages.errors import InputError
 from .quantity import behind
 from .result.agreement import LIMIT
-from .result.findings import Check
 from .result.result import Report
 from .study import Study
 from .views import FORMATS
 from .which_workbook import shipped_workbook
-
-__all__ = ["Verification", "verify"]
 
 _UNTOLD = "lies there, but is no part of the build that its manifest tells of"
 _UNEXPLAINED = (

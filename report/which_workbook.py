@@ -17,8 +17,6 @@ from .workbooks import SHIPPED
 if TYPE_CHECKING:
     from .workbook import Workbook
 
-__all__ = ["find_workbook", "is_shipped", "shipped_workbook"]
-
 
 def _imported(name: str) -> Workbook:
     workbook: Workbook = importlib.import_module(SHIPPED[name]).WORKBOOK

@@ -19,20 +19,6 @@ if TYPE_CHECKING:
     from .column import Column
     from .sheet import Sheet
 
-__all__ = [
-    "Curve",
-    "Design",
-    "Either",
-    "FigureSpec",
-    "Measured",
-    "Parameter",
-    "RowTable",
-    "SquareSum",
-    "TableSpec",
-    "Workbook",
-    "tables_of",
-]
-
 
 @dataclass(frozen=True)
 class Measured:

@@ -20,9 +20,10 @@ from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.excel_formulas import _SETTLED, _UNSETTLED
 from loopsheet.report.engines.excel_loops import PASSES, pass_columns, pass_name
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.judge.engines import EPS, LIMIT, Judge
+from loopsheet.report.judge.engines import EPS, Judge
 from loopsheet.report.judge.readers import Reading
 from loopsheet.report.quantity import LARGEST, SMALLEST
+from loopsheet.report.result.agreement import LIMIT
 from loopsheet.report.sheet import Column, Formula, Sheet
 
 __all__ = ["Tally", "compare"]

@@ -11,9 +11,9 @@ import pytest
 from small_report import end_gauge
 
 from loopsheet.report.inputs.inputs import Inputs
-from loopsheet.report.messages.diagnostics import Diagnostic, Location
+from loopsheet.report.messages.diagnostics import Check, Diagnostic, Location
 from loopsheet.report.result.agreement import Agreement
-from loopsheet.report.result.findings import Check, checks, of_diagnostics, of_engine
+from loopsheet.report.result.findings import checks, of_diagnostics, of_engine
 from loopsheet.report.study import Study
 from loopsheet.report.views.checks import FORMATS, as_github, as_json, as_junit, as_markdown, summary
 from loopsheet.report.views.markdown import cell, code

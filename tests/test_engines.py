@@ -13,9 +13,10 @@ import sympy
 
 from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import ENGINES, exact
-from loopsheet.report.judge.engines import EPS, LIMIT, Judge
+from loopsheet.report.judge.engines import EPS, Judge
 from loopsheet.report.judge.readers import Case, Reading
 from loopsheet.report.quantity import SMALLEST
+from loopsheet.report.result.agreement import LIMIT
 
 
 @pytest.fixture(scope="module")

@@ -40,8 +40,9 @@ from loopsheet.report.engines import javascript
 from loopsheet.report.engines.kernels import compiled
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.engines.numpy_texts import program_texts
-from loopsheet.report.judge.engines import LIMIT, Judge
+from loopsheet.report.judge.engines import Judge
 from loopsheet.report.plan.lowering import lowered
+from loopsheet.report.result.agreement import LIMIT
 
 pytestmark = [pytest.mark.campaigns, pytest.mark.usefixtures("anew")]
 

@@ -8,9 +8,10 @@ from small_report import end_gauge
 from loopsheet.derivations.equation import Step
 from loopsheet.derivations.proved import Proof, ProofStatus, StepProof
 from loopsheet.report.engines import ENGINES
+from loopsheet.report.messages.diagnostics import Check
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.agreement import Agreement
-from loopsheet.report.result.findings import Check, checks, names_of, of_engine, table_names
+from loopsheet.report.result.findings import checks, names_of, of_engine, table_names
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.verdict import (
     REACHABLE,

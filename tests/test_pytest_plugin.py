@@ -12,7 +12,7 @@ import pytest
 
 from loopsheet.report.engines import ENGINES
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.inputs.inputs import PublishedValue
+from loopsheet.report.inputs.published import PublishedValue
 from loopsheet.report.pytest_plugin import _is_ours
 from loopsheet.report.result.findings import names_of
 

@@ -20,8 +20,7 @@ from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.numpy import Program
-from loopsheet.report.engines.numpy_root import RootProgram
-from loopsheet.report.engines.numpy_steps import RootRows
+from loopsheet.report.engines.numpy_root import RootProgram, RootRows
 from loopsheet.report.engines.roots import derivatives, hoist, householder, magnitude, step
 from loopsheet.report.plan.nodes import RowSum
 from loopsheet.report.sheet import Root, Sheet

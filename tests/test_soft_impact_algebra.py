@@ -299,7 +299,7 @@ def test_a_spurious_root_of_11_lies_outside_the_condition() -> None:
         assert [mpmath.nstr(root, 5) for root in roots] == ["1.073", "2.6446"]
         assert [margin(root) > 0 for root in roots] == [False, True]
         assert [depth(root) > 0 for root in roots] == [False, True]
-        form = at(model.root_form.members[0], FACTS_PAIR, model.u)
+        form = at(alpha_root.root_form.members[0], FACTS_PAIR, alpha_root.u)
         assert all(abs(form(1 / (root + 1))) < mpmath.mpf(10) ** -35 for root in roots)
 
 
@@ -353,9 +353,9 @@ def predicted(pair: Pair) -> int:
     """Count them by the theorem: the sign at both ends and, if it lies between, at the turning point (L8)."""
     _, _, e1, e2, x1, x2, _ = map(mpmath.mpf, pair)
     top = end_of(pair)
-    form = at(model.root_form.members[0], pair, model.u)
+    form = at(alpha_root.root_form.members[0], pair, alpha_root.u)
     with_log = {alpha_root.Lambda: alpha_root.log_speeds.value}
-    turning = at(model.turning.value.xreplace(with_log), pair, model.u)(mpmath.mpf(0))
+    turning = at(alpha_root.turning.value.xreplace(with_log), pair, alpha_root.u)(mpmath.mpf(0))
     signs = [mpmath.sign(x2 - x1)]
     if isinstance(turning, mpmath.mpf) and 0 < turning < top:
         signs.append(mpmath.sign(form(turning)))
@@ -418,8 +418,8 @@ def test_the_starting_value_is_near() -> None:
     # The paper's tests 1 and 5; alpha is 1.29371 there.
     pair = ("2.334", "4.993", "0.530", "0.453", "23.5", "51.03", "1.5")
     with mpmath.workdps(40):
-        start = at(model.starting_value(), pair, model.u)(mpmath.mpf(0))
-        root = mpmath.findroot(at(model.root_form.members[0], pair, model.u), start)
+        start = at(alpha_root.starting_value(), pair, alpha_root.u)(mpmath.mpf(0))
+        root = mpmath.findroot(at(alpha_root.root_form.members[0], pair, alpha_root.u), start)
         assert abs(start / root - 1) < 3e-4
         assert mpmath.nstr(1 / root - 1, 5) == "1.2937"
 

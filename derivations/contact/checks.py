@@ -22,8 +22,6 @@ from . import hertz, lankarani_1994, power_law
 from .one_constant import COMES_BACK
 from .quantities import SHARED
 
-__all__ = ["CELLS", "ENTRIES", "NEEDS", "OWN"]
-
 OWN = (
     Quantity("ln_v", "logarithm of the speed over the mean speed", "1", r"\ln(v'%s/v_0)", (-1.0, 1.0), False),
     Quantity("ln_e", "logarithm of the restitution", "1", r"\ln e%s", (-1.0, -0.1), False),

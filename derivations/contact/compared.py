@@ -20,8 +20,6 @@ from ..symbols import k
 from ..vocabulary import Quantity
 from .model import ContactModel
 
-__all__ = ["Compared", "compared"]
-
 _WORDS = {"v": "speed", "e": "restitution", "x_p": "imprint"}
 _UNITS = {"v": "m/s", "e": "1", "x_p": "m"}
 _U = {"v": PAPER["u_v"], "e": PAPER["u_e"], "x_p": PAPER["u_x"]}

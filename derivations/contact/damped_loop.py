@@ -28,15 +28,6 @@ from ..vocabulary import Quantity, Vocabulary
 from . import damping
 from .quantities import SHARED
 
-# fmt: off
-__all__ = [  # noqa: RUF022 - symbols, then equations in their order
-    "x", "rate", "v_0", "m_red", "C", "alpha", "beta", "Cprime", "x_m", "x_p", "e", "c_c", "c_r", "s_c",
-    "s_r", "C_u", "beta_u", "W_c", "W_r", "W_p",
-    "loading", "unloading", "share_c", "share_r", "elastic_c", "elastic_r", "approach", "meets", "imprint",
-    "friction_c", "friction_r", "plastic", "loss", "like_3", "LEDGER",
-]
-# fmt: on
-
 VOCABULARY = Vocabulary(
     *(damping.VOCABULARY[name] for name in ("x", "xdot", "v_0", "m_red", "g")),
     Quantity("F_c", "force in compression", "N", "F_{c%s}", (1.0, 5000.0)),

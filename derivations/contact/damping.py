@@ -26,16 +26,6 @@ from ..equation import Derivation, Equation, Kind, Ledger, Step, define
 from ..vocabulary import Quantity, Vocabulary
 from .quantities import SHARED
 
-# fmt: off
-__all__ = [  # noqa: RUF022 - symbols, then equations in their order
-    "x", "rate", "F", "K", "n", "c", "e", "e_o", "v_0", "m_red", "x_m", "u_F", "x_F", "F_m", "W",
-    "q", "family", "compression", "left", "rebound", "work", "approach", "returned", "by_decay", "peak_speed",
-    "peak_approach", "greatest", "tsuji", "damping_ratio", "zeta", "K_T", "J", "mean_flores",
-    "back", "asked", "lasting", "s_d", "t",
-    "MEMBERS", "LEDGER",
-]
-# fmt: on
-
 VOCABULARY = Vocabulary(
     Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
     Quantity("xdot", "rate of the approach", "m/s", r"\dot{x}%s", (-5.0, 5.0), positive=False),

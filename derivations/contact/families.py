@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ..equation import Ledger
 
-__all__ = ["FAMILIES", "family"]
-
 FAMILIES = ("damping", "damped-loop")
 """Forces that simulation codes have, and law (3) with damping."""
 

@@ -17,23 +17,6 @@ from ..vocabulary import Quantity, Vocabulary
 from .model import ContactModel
 from .quantities import SHARED
 
-__all__ = [
-    "CONTACT",
-    "HERTZ",
-    "duration",
-    "elastic_duration",
-    "half",
-    "lasts",
-    "modulus",
-    "radius",
-    "radius_of_two",
-    "recovery",
-    "returned_work",
-    "stiffness",
-    "timed",
-    "unloads",
-]
-
 OWN = (
     Quantity("x_m_hertz", "maximum approach by Hertz", "m", r"x_{m,\mathrm{H}%s}", (1e-5, 1e-4)),
     Quantity("F_m_hertz", "greatest force by Hertz", "N", r"F_{m,\mathrm{H}%s}", (100.0, 1e4)),

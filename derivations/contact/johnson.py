@@ -15,8 +15,6 @@ from .model import ContactModel
 from .one_constant import COMES_BACK, LOSES, taken
 from .quantities import SHARED
 
-__all__ = ["FIRST_YIELD", "JOHNSON", "SLOW", "YIELD", "YIELD_WORDS"]
-
 YIELD_WORDS = (
     Quantity("sigma_Y", "yield strength of the target", "Pa", "Y%s", (1e8, 2e9)),
     # From 0.38 (nu = 0) to 0.55 (nu = 1/2). The slope of (L136) keeps its sign up to 0.84.

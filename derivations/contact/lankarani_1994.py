@@ -18,8 +18,6 @@ from .model import ContactModel
 from .one_constant import LOSES
 from .quantities import SHARED
 
-__all__ = ["LANKARANI_1994"]
-
 OWN = (
     Quantity(
         "x_p_lankarani", "imprint by Lankarani and Nikravesh", "m", r"x_{p,\mathrm{LN}%s}", (1e-6, 1e-4)

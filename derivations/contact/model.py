@@ -13,8 +13,6 @@ from sympy import Add, Expr, Piecewise, Rel, Symbol, diff
 from ..equation import Derivation, Equation
 from ..vocabulary import Quantity
 
-__all__ = ["Constant", "ContactModel"]
-
 
 @dataclass(frozen=True)
 class Constant:

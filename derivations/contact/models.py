@@ -18,8 +18,6 @@ from .power_law import POWER_LAW
 from .quantities import SHARED
 from .thornton import THORNTON
 
-__all__ = ["BESIDE", "LEDGER", "MODELS"]
-
 MODELS = (HERTZ, LANKARANI_1994, JOHNSON, THORNTON, POWER_LAW)
 BESIDE = {model.name: compared(model, f"(L{number})") for number, model in enumerate(MODELS, 191)}
 """Each beside the tests; nothing is numbered after these, so that there may be more."""

@@ -16,8 +16,6 @@ from ..vocabulary import Quantity
 from .model import Constant
 from .quantities import SHARED
 
-__all__ = ["COMES_BACK", "LOSES", "taken"]
-
 _e = SHARED["e"].symbol
 COMES_BACK = (
     _e > Rational(1, 2**30),

@@ -15,8 +15,6 @@ from .hertz import duration, timed
 from .model import ContactModel
 from .quantities import SHARED
 
-__all__ = ["POWER_LAW"]
-
 OWN = (
     Quantity("x_m_power", "maximum approach by law (3)", "m", r"x_{m,(3)%s}", (1e-5, 1e-4)),
     Quantity("F_m_power", "greatest force by law (3)", "N", r"F_{m,(3)%s}", (100.0, 1e4)),

@@ -16,8 +16,6 @@ from ..equation import Derivation, Equation, Step
 from ..vocabulary import Quantity
 from . import damping, hertz
 
-__all__ = ["AUTHORS", "ENTRIES", "OWN", "Author", "Solving", "Told", "course"]
-
 _TAKEN = (
     "xdot", "c", "g", "q", "e_o", "s_d", "sdot", "xddot", "x_s", "t_d", "u_F", "x_F", "W_LN", "W_HG", "W_F",
 )  # fmt: skip

@@ -5,8 +5,6 @@ from __future__ import annotations
 from ..symbols import VOCABULARY as PAPER
 from ..vocabulary import Quantity, Vocabulary
 
-__all__ = ["SHARED"]
-
 SHARED = Vocabulary(
     *(PAPER[name] for name in ("v", "e", "x_p", "m_red", "x", "d", "F", "beta")),
     Quantity("E_1", "Young's modulus of the ball", "Pa", "E_{1%s}", (1e9, 4e11)),

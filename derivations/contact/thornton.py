@@ -18,8 +18,6 @@ from .model import ContactModel
 from .one_constant import COMES_BACK, LOSES, taken
 from .quantities import SHARED
 
-__all__ = ["THORNTON", "share"]
-
 OWN = (
     Quantity(
         "r_Y_alone",

@@ -25,8 +25,6 @@ from ..machine.staging import put
 from ..machine.stopping import unstoppable
 from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose, why
 
-__all__ = ["NAME", "added", "crate", "write"]
-
 NAME = "ro-crate-metadata.json"
 _BUILD = "loopsheet build"
 SPECIFICATION = "https://w3id.org/ro/crate/1.1"

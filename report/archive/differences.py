@@ -18,8 +18,6 @@ from ..files.values import Column, Conformity, Result
 from ..quantity import behind
 from ..result.agreement import LIMIT
 
-__all__ = ["Differences", "Move", "OtherChange", "compare"]
-
 SURELY = 1e-6
 """Relative: what an uncertainty may differ by, of which nobody reads the third digit."""
 EPS = sys.float_info.epsilon

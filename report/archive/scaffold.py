@@ -18,8 +18,6 @@ from .wheel import wheel
 if TYPE_CHECKING:
     from ..workbook import Measured, Parameter, RowTable, Workbook
 
-__all__ = ["CI", "new", "repository"]
-
 OWN = "workbook.py"
 """What a method of one's own is called in its folder."""
 

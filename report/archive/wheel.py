@@ -11,8 +11,6 @@ from importlib.metadata import PackageNotFoundError, distribution
 from ..machine.provenance import PARTS, ROOT, files
 from ..messages.errors import OutputError, diagnose
 
-__all__ = ["wheel"]
-
 _DATA = "data"
 _BORN = (1980, 1, 1, 0, 0, 0)
 """The first day that a zip can tell: the same sources are the same bytes."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-__all__ = ["address", "index_text", "named", "parts", "word"]
-
 _ROW = re.compile("(?:[0-9]{1,9}(?:-[0-9]{1,9})*)?")
 
 

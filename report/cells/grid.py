@@ -17,28 +17,6 @@ from ..charts import Drawn
 from ..quantity import Bounds
 from ..sheet import Axis
 
-__all__ = [
-    "BUDGETS",
-    "CHECKED",
-    "FIRST_ROW",
-    "LONGEST",
-    "MOST_RESULTS",
-    "SCALARS",
-    "SLOPES",
-    "STEPS",
-    "TOP",
-    "CellBlock",
-    "FilledDown",
-    "Grid",
-    "Grouped",
-    "Place",
-    "Product",
-    "as_issued",
-    "checked",
-    "factors",
-    "letters",
-]
-
 FIRST_ROW = 7
 """The row, from 0, of the first cell below the header of an axis' worksheet."""
 LONGEST = 8000

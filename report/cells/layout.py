@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 
-__all__ = ["Layout", "Precedent", "evenly", "height", "how_large", "lay_out", "precedents"]
-
 
 @dataclass(frozen=True)
 class Layout:

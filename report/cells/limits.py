@@ -9,8 +9,6 @@ from ..named import within
 from ..quantity import Bounds
 from ..sheet import Column, Limit, SheetError
 
-__all__ = ["inside"]
-
 
 def inside(limit: Limit, column: Column, name: str, says: str) -> Equation:
     """What a margin is, in the cells that the limit compares.

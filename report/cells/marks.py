@@ -19,8 +19,6 @@ from ..partly import partly
 from ..sheet import Column, Formula, Limit, Sheet
 from .values import Cell, Status, Values
 
-__all__ = ["Margin", "MarkCount", "Marks", "margins", "with_margins"]
-
 
 @dataclass(frozen=True)
 class Margin:

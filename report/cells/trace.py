@@ -11,8 +11,6 @@ from ..sheet import Column
 from .layout import Precedent, precedents
 from .values import Cell, Values
 
-__all__ = ["Group", "dependents_of", "precedents_of"]
-
 
 @dataclass(frozen=True)
 class Group:

@@ -21,18 +21,6 @@ from ..named import name_of
 from ..quantity import Bounds
 from ..sheet import Column, Formula, Given, Iterated, Root, Sheet, SheetError
 
-__all__ = [
-    "Dimension",
-    "DimensionMismatch",
-    "as_its_parts",
-    "check",
-    "check_column",
-    "dimension_of_unit",
-    "is_alike",
-    "named_unit_of",
-    "unit_of",
-]
-
 
 class DimensionMismatch(SheetError):
     """A formula adds, compares or raises what cannot be."""

@@ -18,8 +18,6 @@ from .address import address
 from .address import word as is_word
 from .layout import Layout, Precedent, precedents
 
-__all__ = ["CODES", "Cell", "Status", "Values", "how_many", "inherited", "other_rows", "rows_kept"]
-
 Codes = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
 

@@ -9,8 +9,6 @@ from ..result.card import Card, Cards
 from ..workbook import FigureSpec
 from .tree import Blocks, Code, Inlines, Items, Note, Row, Rows, Strong, Table, TableColumn
 
-__all__ = ["IMPRINTS", "RESTITUTIONS", "RETURNED", "blocks", "figures"]
-
 RETURNED, RESTITUTIONS, IMPRINTS = "cards_returned", "cards_restitutions", "cards_imprints"
 """The names of the pictures and of their drawings."""
 WORDS = "in words"

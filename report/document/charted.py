@@ -13,8 +13,6 @@ from .material import Material
 from .notation import fragments
 from .tree import Math, Refer
 
-__all__ = ["PREFIXES", "Letters", "Scale", "Words", "plain", "plain_unit", "thinned", "unit_text"]
-
 Letters = tuple[tuple[str, str], ...]
 """Pieces of a text: upright (``""``) or a symbol's, on the line (``i``), below or above it (``_``, ``^``)."""
 

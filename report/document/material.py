@@ -28,8 +28,6 @@ from .rich import Sentences
 from .tree import Badge
 from .written import written
 
-__all__ = ["Material"]
-
 
 class Material:
     """A report as its document sees it."""

@@ -39,8 +39,6 @@ from ...derivations.text import flat
 from ..named import name_of
 from .names import Terms, join, name_latex
 
-__all__ = ["MathPrinter"]
-
 _RELATIONS = {"<=": r"\le", ">=": r"\ge", "<": "<", ">": ">", "==": "=", "!=": r"\ne"}
 _MIRROR = {">=": "<=", ">": "<"}
 _TALL = re.compile(r"\\(?:frac|sum|int|sqrt|left|begin)")

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping
 from ...derivations.vocabulary import Vocabulary, spelt, with_index
 from ..sheet import Column
 
-__all__ = ["Terms", "join", "latex_names", "name_latex"]
-
 Terms = list[tuple[bool, str]]
 """LaTeX of the terms of a sum, each with whether it is subtracted."""
 

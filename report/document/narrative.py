@@ -30,8 +30,6 @@ from .tree import Block, Blocks, Code, Inlines, Items, Link, Note, Paragraph, Se
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-__all__ = ["FOLDER", "NarrativeError", "narratives", "sections"]
-
 FOLDER = Path(__file__).resolve().parents[2] / "templates" / "prose"
 
 _MARKDOWN = ["heading", "list", "blockquote", "emphasis", "backticks", "link", "newline"]

@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-__all__ = ["FUNCTIONS", "NONE", "Notation", "fragments", "plain", "read"]
-
 
 class Notation(NamedTuple):
     r"""A piece of notation."""

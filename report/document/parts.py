@@ -13,22 +13,6 @@ from ..result.numbers import Numeral
 from ..result.result import Comparison
 from .names import Terms
 
-__all__ = [
-    "MARK",
-    "MOST",
-    "Head",
-    "Item",
-    "Pair",
-    "Placed",
-    "Remark",
-    "SourceGroup",
-    "Written",
-    "cell_id",
-    "described",
-    "slug",
-    "why_address",
-]  # fmt: skip
-
 MARK = "†"
 """What stands behind a number that lies outside of what is expected."""
 MOST = 300

@@ -8,8 +8,6 @@ from ..result.result import Report
 from ..workbook import FigureSpec
 from . import cards, refereed
 
-__all__ = ["figures"]
-
 
 def figures(report: Report) -> tuple[FigureSpec, ...]:
     """The workbook's, then the referee's and those of cards, with the numbers that are left."""

@@ -13,8 +13,6 @@ from ..sheet import Column, Formula, Given, Root, Sheet
 from .math import MathPrinter
 from .parts import Placed
 
-__all__ = ["placed_in"]
-
 _BETWEEN = re.compile(
     r"(?:(?<=[\d})])|(?<=\\pi))(?<!\\begin\{cases\}) (?=\\text\{@|\\left|\(|\\frac|\\sqrt|\\pi|\d|"
     r"\\(?:ln|exp|sin|cos|tan|sinh|cosh|tanh|operatorname)\b)"

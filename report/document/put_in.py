@@ -18,8 +18,6 @@ from .names import name_latex
 from .tree import Blocks, PutIn
 from .written import placed
 
-__all__ = ["put_in"]
-
 MOST = 40
 """Equations that are shown so; of rows there is the first that has a value."""
 DIGITS = 10

@@ -12,8 +12,6 @@ from ..result.verdict import EXACT, REACHABLE, UNREACHABLE, Verdict
 from ..workbook import FigureSpec
 from .parts import Head, Pair
 
-__all__ = ["FIGURE", "GOOD", "RefereedPair", "figures", "shown_mismatch"]
-
 GOOD = (EXACT, REACHABLE)
 """Verdicts on what comes out of what is printed."""
 

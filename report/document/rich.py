@@ -16,8 +16,6 @@ from ..result.numbers import read
 from .names import name_latex
 from .tree import Inline, Inlines, Math, Number, Refer, Unit
 
-__all__ = ["Sentences"]
-
 _UNIT = r"(?<!\w)N/m\^\w+|(?<=[\d–]\s)(?:[uμ](?:m|s|in)\b%s)"
 _PART = (
     r"(?P<number>(?<![\w.])-?\d+(?:\.\d+)?e[+-]?\d+(?!\w))"

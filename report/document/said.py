@@ -52,8 +52,6 @@ from .tree import (
 )  # fmt: skip
 from .written import gone
 
-__all__ = ["SAID", "Role", "Said", "UnknownName"]
-
 Answer = Inlines | Blocks | bool
 
 

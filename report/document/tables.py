@@ -50,8 +50,6 @@ from .tree import (
     joined,
 )
 
-__all__ = ["Tables"]
-
 MOST_SOURCES, LEAST_SHARE = 3, 0.05
 """The sources of an uncertainty that are named, and the least share of the variance of one."""
 MOST_BARS = 12

@@ -17,44 +17,6 @@ from ..workbook import FigureSpec
 from .names import Terms
 from .parts import Item, cell_id
 
-__all__ = [
-    "Badge",
-    "Bar",
-    "Block",
-    "Blocks",
-    "Claim",
-    "Code",
-    "Count",
-    "Display",
-    "Entry",
-    "Figure",
-    "Headline",
-    "HeadlineItem",
-    "Hint",
-    "Inline",
-    "Inlines",
-    "Items",
-    "Link",
-    "Math",
-    "Node",
-    "Note",
-    "Number",
-    "Paragraph",
-    "PutIn",
-    "Refer",
-    "Row",
-    "Rows",
-    "Section",
-    "Silent",
-    "Strong",
-    "Table",
-    "TableColumn",
-    "Unit",
-    "Value",
-    "in_unit",
-    "joined",
-]  # fmt: skip
-
 
 class Node:
     """What a format prints by a rule of its own, named after the class."""

@@ -12,8 +12,6 @@ from ...derivations.vocabulary import Vocabulary
 from .math import MathPrinter
 from .parts import Written
 
-__all__ = ["gone_of", "written_of"]
-
 
 def written_of(equation: Equation, names: Mapping[str, str], vocabulary: Vocabulary) -> Written:
     """An equation, written; parameters as for :func:`~loopsheet.report.document.written.written`."""

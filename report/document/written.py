@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...derivations.equation import Equation, Step
     from ...derivations.vocabulary import Vocabulary
 
-__all__ = ["gone", "placed", "text_of", "written"]
-
 
 def written(equation: Equation, names: Mapping[str, str], vocabulary: Vocabulary) -> Written:
     """How an equation is written.

@@ -51,8 +51,6 @@ from .mpmath_intervals import differences, printed
 from .numpy_code import kernel
 from .roots import magnitude
 
-__all__ = ["certified", "enclosing", "held", "slope", "typed_form"]
-
 JUMPS = (floor, ceiling, sign, Piecewise)
 _HALVINGS, _PARTS = 16, 64
 """How often an interval of the unknown is halved, and how many parts may be open after that."""

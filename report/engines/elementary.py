@@ -14,8 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["exp", "exp_beside", "log", "log_beside", "power"]
-
 Array = NDArray[np.float64]
 
 

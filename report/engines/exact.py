@@ -32,8 +32,6 @@ from .isolation import Doubtful
 from .kernels import Enclosing, function_of
 from .numpy_loop import ENOUGH, MOST
 
-__all__ = ["DIGITS", "ExactValues", "as_mpf", "evaluate", "laid_out"]
-
 DIGITS = 50
 _GUARD = 15
 """Digits carried beyond those that are promised: sums and differences eat some."""

@@ -19,8 +19,6 @@ from .isolation import HALVINGS, crossings
 from .kernels import Enclosing
 from .numpy_enclosed import EnclosedRows
 
-__all__ = ["MOST_PARTS", "brackets", "of_arrays", "of_mpmath"]
-
 MOST_PARTS = 2000
 """How many parts of an interval are looked at."""
 Enclose = Callable[[Any, Any], tuple[int, int]]

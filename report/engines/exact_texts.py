@@ -20,8 +20,6 @@ from .mpmath_code import source_of
 from .mpmath_intervals import differences, text_of
 from .numpy_texts import terms_of
 
-__all__ = ["exact_texts"]
-
 
 def exact_texts(sheet: Sheet) -> dict[str, Any]:
     """All that is computed of the columns that are not given.

@@ -22,8 +22,6 @@ from ..plan.nodes import Leaf, Node, Plan, RowOrder, RowSum
 from ..plan.order import Word
 from .excel_values import NotPrintable
 
-__all__ = ["FUNCTIONS", "ExcelPrinter", "IfError", "IsNumber", "ordered"]
-
 FUNCTIONS = {
     "Abs": "ABS",
     "acos": "ACOS",

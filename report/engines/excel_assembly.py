@@ -46,8 +46,6 @@ from .excel_slopes import Slopes
 from .excel_values import NotPrintable
 from .numpy_texts import program_texts
 
-__all__ = ["Assembly", "auxiliary_texts"]
-
 _ABOVE = 6
 """How far above the first row of a drawn axis the number stands that says how often it repeats."""
 _GAP = 3

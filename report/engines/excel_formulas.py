@@ -30,8 +30,6 @@ from .excel_loops import PASSES, pass_name
 from .excel_roots import Auxiliary, Unrolled
 from .excel_values import READY
 
-__all__ = ["Formulas", "Places", "Writing", "carried", "carried_name", "guard", "works_on_ranges"]
-
 _ON_RANGES = (*(f"{word.upper()}(IF(" for word in get_args(Word)), "MINVERSE(", "SMALL(")
 """What works on ranges in formulas: a spreadsheet that is not told so takes the cell of its own row."""
 

@@ -19,8 +19,6 @@ from .excel_loops import pass_columns, passes_of
 from .excel_values import auxiliary_values, filled, settles, slope_values, with_passes
 from .numpy import extend
 
-__all__ = ["MOST_ROWS", "TooManyRows", "check_rows", "grid", "with_first_pass"]
-
 MOST_ROWS = 40_000
 """Rows of a worksheet; a million would fit, but these take half a gigabyte to make, and more to open."""
 _RESERVED = (SCALARS, STEPS, SLOPES, "figures", "published", "equations", "history")

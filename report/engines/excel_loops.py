@@ -17,8 +17,6 @@ from ..sheet import Loop, Sheet
 if TYPE_CHECKING:
     from sympy import Basic
 
-__all__ = ["PASSES", "Pass", "names_in", "pass_columns", "pass_name", "passes_of"]
-
 PASSES = 20
 """How many a workbook has; a step that does not come near by a tenth each time would need more."""
 

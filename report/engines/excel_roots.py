@@ -20,8 +20,6 @@ from .excel import IfError, IsNumber
 from .excel_values import SETTLED
 from .roots import derivatives, householder
 
-__all__ = ["Auxiliary", "Unrolled", "unroll"]
-
 _PRIMES = "′″‴"
 _DERIVATIVES = ("its derivative", "its second derivative", "its third derivative")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")

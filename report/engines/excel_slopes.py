@@ -28,8 +28,6 @@ from .excel_formulas import Formulas, Writing, works_on_ranges
 from .excel_values import NotPrintable
 from .numpy_texts import program_texts
 
-__all__ = ["Slopes"]
-
 _CRAMER = 2
 """Of so many numbers, the equations are solved by determinants; of more by an inverse."""
 _WIDE = 4

@@ -23,17 +23,6 @@ from .kernels import Array
 from .numpy import Laid, Program, again, parts
 from .numpy_adjoints import computed
 
-__all__ = [
-    "READY",
-    "SETTLED",
-    "NotPrintable",
-    "auxiliary_values",
-    "filled",
-    "settles",
-    "slope_values",
-    "with_passes",
-]
-
 READY = "ready"
 """What the first cell says where all precedents have values."""
 

@@ -27,8 +27,6 @@ from ..workbook import Curve
 from .excel_loops import PASSES
 from .numpy import Program, evaluate
 
-__all__ = ["begun", "begun_at"]
-
 STEPS, LAST = 5000, 1e-15
 """How many steps it may take, and the share of anything that is not worth another."""
 

@@ -11,8 +11,6 @@ from mpmath import iv
 
 from .kernels import function_of
 
-__all__ = ["Run", "holds", "running", "sign"]
-
 BITS = 53
 """As many as doubles have: what these cannot decide is not decided here either."""
 KNOWN = {

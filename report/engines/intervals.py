@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 
 from . import elementary
 
-__all__ = ["Intervals", "joined", "whole"]
-
 Array = NDArray[np.float64]
 
 WIDER = 2.0**-50

@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 
 from .intervals import Intervals
 
-__all__ = ["HALVINGS", "Doubtful", "Isolated", "crossings", "isolate"]
-
 Array = NDArray[np.float64]
 Enclose = Callable[[NDArray[np.intp], Array, Array], tuple[Intervals, Intervals, NDArray[np.bool_]]]
 

@@ -24,8 +24,6 @@ from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, 
 from .certified import certified, slope, typed_form
 from .javascript_intervals import NOTHING, enclose, needed
 
-__all__ = ["LOOPS", "RUNTIME", "program"]
-
 _TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 RUNTIME = _TEMPLATES / "minified" / "runtime.js"
 """What runs a program."""

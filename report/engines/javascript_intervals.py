@@ -44,8 +44,6 @@ from sympy.logic.boolalg import Boolean
 
 from ..plan.nodes import RowSum
 
-__all__ = ["FUNCTIONS", "NOTHING", "enclose", "interval", "needed"]
-
 FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "minified" / "intervals.js"
 """The functions, a part for each."""
 

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from . import elementary
 
-__all__ = ["SAME", "Array", "Enclosing", "Function", "Kernel", "compiled", "function_of"]
-
 Array = NDArray[np.float64]
 Function = Callable[..., tuple[Array, ...]]
 

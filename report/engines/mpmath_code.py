@@ -7,8 +7,6 @@ from collections.abc import Sequence
 
 from sympy import Basic, Symbol, lambdify
 
-__all__ = ["source_of"]
-
 
 def source_of(
     symbols: Sequence[Symbol], bodies: Sequence[Basic], common: bool, modules: str = "mpmath"

@@ -13,8 +13,6 @@ from ..plan.nodes import RowOrder, RowSum
 from .interval_functions import Run, running
 from .mpmath_code import source_of
 
-__all__ = ["differences", "printed", "text_of"]
-
 
 def text_of(symbols: Sequence[Symbol], bodies: Sequence[Basic]) -> str | None:
     """A function of intervals that encloses expressions; None if mpmath knows no intervals of a part."""

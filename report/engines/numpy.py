@@ -26,8 +26,6 @@ from .numpy_loop import LoopProgram, Settling
 from .numpy_root import RootProgram
 from .numpy_rows import Kept, chosen, in_groups
 
-__all__ = ["Laid", "Program", "again", "evaluate", "extend", "parts"]
-
 Codes = NDArray[np.uint8]
 Masks = Mapping[str, NDArray[np.bool_]]
 

@@ -15,8 +15,6 @@ from ..plan.order import Word, places
 from ..plan.slopes import NodeDerivatives
 from .kernels import Array
 
-__all__ = ["computed"]
-
 
 def computed(
     quantities: Iterable[Adjoint],

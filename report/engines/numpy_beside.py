@@ -22,11 +22,8 @@ from . import elementary
 from .intervals import Intervals
 from .kernels import SAME, Array
 from .numpy import Laid, Program
-from .numpy_root import RootProgram
+from .numpy_root import RootProgram, RootRows
 from .numpy_rows import Kept, in_groups
-from .numpy_steps import RootRows
-
-__all__ = ["BESIDE", "Beside"]
 
 Mask = NDArray[np.bool_]
 

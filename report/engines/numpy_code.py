@@ -15,8 +15,6 @@ from ..plan.nodes import RowOrder, RowSum, taken_over
 from ..sheet import SheetError
 from .kernels import Kernel
 
-__all__ = ["ArrayPrinter", "kernel", "printed", "text_of", "write"]
-
 
 class ArrayPrinter(NumPyPrinter):
     """NumPy's printer, with what broadcasting over columns needs; what it cannot print, it refuses."""

@@ -20,8 +20,6 @@ from .isolation import Isolated, isolate
 from .kernels import Array, Enclosing
 from .numpy_rows import KeptBetween, KeptIntervals
 
-__all__ = ["EnclosedRows"]
-
 Mask = NDArray[np.bool_]
 
 PARTS = 32

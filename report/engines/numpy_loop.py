@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from ..cells.values import Status
 from .kernels import SAME, Array, Function, compiled
 
-__all__ = ["ENOUGH", "MOST", "NEAR", "STILL", "LoopProgram", "Settling"]
-
 Codes = NDArray[np.uint8]
 
 MOST = 100

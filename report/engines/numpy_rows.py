@@ -14,8 +14,6 @@ from ..cells.layout import Layout
 from ..plan.order import Word, places
 from .intervals import Intervals
 
-__all__ = ["InGroups", "Kept", "KeptBetween", "KeptIntervals", "chosen", "in_groups"]
-
 
 def chosen(conditions: Sequence[Any], values: Sequence[Any], default: Any) -> Any:
     """What belongs to the first condition that holds: numpy.select, which takes longer for few rows."""

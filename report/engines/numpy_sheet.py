@@ -17,8 +17,6 @@ from ..column import Column
 from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total, free_name
 from .numpy_code import ArrayPrinter, printed, text_of
 
-__all__ = ["sheet_function"]
-
 
 def sheet_function(plan: Plan, roots: Mapping[str, Iterable[str]], iterated: Iterable[Column] = ()) -> str:
     """Print a plan.

@@ -15,8 +15,6 @@ from .numpy_code import kernel, write
 from .numpy_sheet import sheet_function
 from .roots import hoist, magnitude, step
 
-__all__ = ["condition_texts", "loop_texts", "program_texts", "root_texts", "terms_of"]
-
 
 def program_texts(sheet: Sheet, plan: Plan) -> dict[str, Any]:
     """The functions of a plan, printed: data of which :class:`Program` is made.

@@ -11,8 +11,6 @@ from sympy import Abs, Add, Basic, Expr, Mul, Pow, Sum, Symbol, exp, factor_term
 from ...derivations.differentiated import beside_corners, differentiated
 from ..plan.nodes import RowSum
 
-__all__ = ["derivatives", "hoist", "householder", "magnitude", "step"]
-
 
 def derivatives(function: Expr, unknown: Symbol) -> tuple[Expr, Expr, Expr, Expr]:
     """The function and its first three derivatives; at a corner those beside it."""

@@ -6,8 +6,6 @@ from msgspec import field
 
 from .form import Form
 
-__all__ = ["Crate", "Entity", "Reference"]
-
 
 class Reference(Form, frozen=True, kw_only=True):
     """One entity named by another."""

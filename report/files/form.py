@@ -13,22 +13,6 @@ import msgspec
 
 from ..messages.errors import InputError, Location, diagnose
 
-__all__ = [
-    "SCHEMA",
-    "Form",
-    "Index",
-    "Malformed",
-    "Schema",
-    "Text",
-    "alike",
-    "decoded",
-    "indented",
-    "load",
-    "read",
-    "schema",
-    "text",
-]
-
 LARGEST = 500_000_000
 """Bytes."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"

@@ -12,8 +12,6 @@ from msgspec.structs import replace
 
 from .form import Form, Malformed, Schema, Text, load, read
 
-__all__ = ["NAME", "Manifest", "is_as_built", "manifest_of", "read_manifest"]
-
 NAME = "manifest.json"
 
 FileName = Annotated[Text, Meta(max_length=1000)]

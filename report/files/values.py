@@ -10,28 +10,6 @@ from msgspec import UNSET, Meta, UnsetType, field
 
 from .form import Form, Index, Schema, Text, read
 
-__all__ = [
-    "NAME",
-    "Change",
-    "Column",
-    "Conformity",
-    "Erratum",
-    "Explanation",
-    "Fit",
-    "Influences",
-    "Marked",
-    "Oddity",
-    "Published",
-    "Referee",
-    "Result",
-    "Source",
-    "Table",
-    "Tried",
-    "Unit",
-    "Witness",
-    "read_result",
-]
-
 NAME = "values.json"
 
 Number = float | None

@@ -18,8 +18,6 @@ from .drops import Drop, Drops
 from .law import m_red, v_0
 from .simulation import Impact, simulate
 
-__all__ = ["PRESCRIBED", "Unreachable", "card", "solved"]
-
 CLOSE = 1e-11
 """How near to the wanted depth the search for the stiffness ends, over it."""
 _TURNS = 30

@@ -11,25 +11,6 @@ from ...derivations.contact.damping import K_T, damping_ratio, tsuji, zeta
 from ...derivations.contact.damping import e as typed_e
 from .law import ForceLaw
 
-__all__ = [
-    "BY_RATIO",
-    "HERTZ",
-    "K_T",
-    "STRENGTHS",
-    "TSUJI",
-    "ContactFormula",
-    "E",
-    "R",
-    "SimulationCode",
-    "Typed",
-    "alpha",
-    "depth",
-    "e",
-    "elastic",
-    "nu",
-    "zeta",
-]
-
 E, nu, R = (Symbol(name, positive=True) for name in ("E", "nu", "R"))
 """Young's modulus in Pa and Poisson's ratio of both bodies, and the effective radius in m."""
 ONE: Expr = Integer(1)

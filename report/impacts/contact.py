@@ -13,8 +13,6 @@ from ...derivations.vocabulary import Vocabulary
 from .code import ContactFormula, Typed, e
 from .law import ForceLaw, m_red, v_0, x, x_max
 
-__all__ = ["formula", "law_of"]
-
 
 def law_of(model: ContactModel, known: Collection[Symbol] = ()) -> ForceLaw:
     """The force of a model.

@@ -16,8 +16,6 @@ from sympy import Expr, Symbol, lambdify
 
 from ...derivations.contact import damping as model
 
-__all__ = ["number_by", "number_for", "returned"]
-
 _DIGITS = 40
 _MARGIN = 1e-15
 """How near to an end a number is sought, over it."""

@@ -15,8 +15,6 @@ from ...derivations.algebra import solve_for
 from ...derivations.symbols import k
 from .law import ForceLaw, x, x_max
 
-__all__ = ["Drop", "Drops"]
-
 
 @dataclass(frozen=True)
 class Drop:

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from .law import ForceLaw, Forces
 
-__all__ = ["Impact", "depth_of", "simulate"]
-
 RELATIVE, ABSOLUTE = 1e-12, 1e-14
 """Tolerances of a step, in units of the estimated depth and the impact speed."""
 LONGEST = 300.0

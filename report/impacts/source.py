@@ -17,8 +17,6 @@ from .code import ContactFormula
 from .drops import Drop, Drops
 from .law import ForceLaw
 
-__all__ = ["SOURCES", "Language", "WrittenLaw", "identified", "modelled"]
-
 _TEMPLATES = Path(__file__).resolve().parents[2] / "templates" / "impacts"
 POINTS = 100
 """Steps of each branch in a table."""

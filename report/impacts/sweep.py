@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from .law import ForceLaw
 
-__all__ = ["as_csv", "course_as_csv", "repeated", "sweep"]
-
 COURSE = "impact,t [s],x [m],v [m/s],F [N],kinetic energy [J],work of the force [J],failure"
 HEAD = "v [m/s],e [1],x_m [m],F_m [N],x_p [m],duration [s],compression [s],loss [J],failure"
 

@@ -14,8 +14,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-__all__ = ["FORMS", "About", "read_about"]
-
 FORMS = "u(l), u1(l), u(l, d), U95(l), k95(l), U(l, k=2), dof(l), r(l, m), low95(l), high95(l)"
 """What there is, for messages."""
 _WRITTEN = re.compile(r"([^()\s]*)\s*\(\s*([^(),]+?)\s*(?:,\s*([^(),]+?)\s*)?\)")

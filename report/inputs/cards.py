@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .tables import TomlTables
 
-__all__ = ["NUMBERS", "AskedCards", "read_cards"]
-
 SECTION = "cards"
 _POSITIVE = Bounds(low=0, low_open=True)
 NUMBERS = {

@@ -13,8 +13,6 @@ from .limits import check_limits, of_every_row
 from .measurements import Measurements
 from .published import check_published
 
-__all__ = ["check_cells"]
-
 
 def check_cells(
     inputs: Inputs,

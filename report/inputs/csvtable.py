@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from .sources import Source
 
-__all__ = ["CsvRow", "CsvTable", "Field", "is_number", "match_columns", "read_table", "without"]
-
 _BLANK = " \t\u00a0"
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "vertical bars"}
 _TITLE = 5

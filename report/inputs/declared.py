@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..sheet import Sheet
     from ..workbook import Workbook
 
-__all__ = ["misnamed", "mistyped"]
-
 _TEXTS = ("name", "title", "source", "prose")
 _LISTS: dict[str, type] = {
     "measured": Measured,

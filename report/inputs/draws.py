@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from .number_text import Declared
     from .sources import Source
 
-__all__ = ["FEWEST", "read_draws"]
-
 FEWEST = 100
 """Draws: fewer say nothing of a distribution."""
 

@@ -15,8 +15,6 @@ from .parameters import wrong_type
 if TYPE_CHECKING:
     from .tables import TomlTables
 
-__all__ = ["Expectation", "Words", "check_expected", "read_expected", "row_of", "rows"]
-
 Index = tuple[int, ...]
 Words = Mapping[str, Mapping[Index, str]]
 

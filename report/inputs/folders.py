@@ -9,22 +9,6 @@ from pathlib import Path
 
 from ..messages.errors import Location, UsageError, diagnose, listing
 
-__all__ = [
-    "EXAMPLES",
-    "INPUTS",
-    "PAPER",
-    "WORD",
-    "built_from",
-    "called",
-    "changed",
-    "is_report",
-    "output",
-    "report_folder",
-    "result",
-    "told",
-    "written",
-]
-
 PAPER = Path(__file__).resolve().parents[2] / "data" / "soft_steel"
 """The shipped campaign."""
 EXAMPLES = tuple(path.parent for path in sorted(PAPER.parent.glob("*/report.toml")))

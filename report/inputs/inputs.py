@@ -52,8 +52,6 @@ if TYPE_CHECKING:
     from ..workbook import Workbook
     from .number_text import Declared
 
-__all__ = ["Find", "Inputs", "PublishedValue", "load"]
-
 Find = Callable[[str, Path, bytes | None], "Workbook"]
 """Finds a workbook by its name in report.toml, the folder, and what the file of that name holds."""
 

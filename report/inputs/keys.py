@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["ANY", "LEFT_OUT", "MEASURED", "PUBLISHED", "TABLES", "Key", "fixed", "for_left_out"]
-
 ANY = "*"
 LEFT_OUT = "left out"
 """The column that says why a test takes no part; empty where it does."""

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .tables import TomlTables
 
-__all__ = ["Guard", "Limits", "check_limits", "of_every_row", "read_limits"]
-
 SECTION, RULE = "limits", "rule"
 EXAMPLE = "1.25 .. 1.35"
 _BOTH = re.compile(r"(?P<low>.+?)\s*\.\.\s*(?P<high>.+)")

@@ -27,17 +27,6 @@ if TYPE_CHECKING:
     from .number_text import Declared
     from .sources import Source
 
-__all__ = [
-    "LEFT_OUT",
-    "MODES",
-    "ColumnHead",
-    "LeftOut",
-    "Measurements",
-    "read_head",
-    "read_measurements",
-    "read_unit",
-]
-
 MODES = ("rounded", "truncated")
 """How a printed number may have been shortened."""
 

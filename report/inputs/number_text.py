@@ -18,16 +18,6 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
     from ..quantity import Bounds
 
-__all__ = [
-    "Declared",
-    "NumberError",
-    "read_number",
-    "read_printed",
-    "read_unit_of",
-    "read_value",
-    "with_uncertainty",
-]
-
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
     r"[+-]?[0-9. '\u00a0\u202f]*,[0-9]+(?:[eE][+-]?[0-9]+)?|[+-]?[0-9]+(?:,[0-9]{3})+\.[0-9]*"

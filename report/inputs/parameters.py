@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ..workbook import Parameter
     from .tomlfile import TomlFile
 
-__all__ = ["read_parameters", "wrong_type"]
-
 # An exponent is never given back: 8.366e-3 g is no 8.366 of a unit "e-3 g".
 _STATED = re.compile(r"\s(exact|[uUs]\s*=.*|(?:\+-|±).*)$")
 """Behind a unit, without the comma."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from .stated import StatedErrors
     from .taken import Taken, TakenError
 
-__all__ = ["Said", "known", "planned", "read_numbers", "read_u"]
-
 Said = Mapping[str, "StatedErrors"]
 """What is stated of columns and parameters, by name."""
 

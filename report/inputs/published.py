@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from .measurements import Measurements
     from .sources import Source
 
-__all__ = ["COLUMNS", "Pin", "PublishedValue", "check_published", "read_published", "unit_fits"]
-
 _REQUIRED = tuple(name for name, column in PUBLISHED.items() if column.required)
 _OPTIONAL = tuple(name for name, column in PUBLISHED.items() if not column.required)
 COLUMNS = (*_REQUIRED, *_OPTIONAL)

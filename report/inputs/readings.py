@@ -8,7 +8,7 @@ from math import copysign, sqrt
 from typing import TYPE_CHECKING, Any
 
 from ..messages.errors import listing, suggest
-from .measurements import LEFT_OUT
+from .keys import LEFT_OUT
 from .parameters import wrong_type
 from .stated import covariance
 
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..quantity import Printed
     from .measurements import Measurements
     from .tables import TomlTables
-
-__all__ = ["correlations_of", "read_paired"]
 
 
 def correlations_of(columns: Mapping[str, Sequence[Printed]]) -> dict[tuple[str, str], float]:

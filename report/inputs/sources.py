@@ -13,8 +13,6 @@ from ..messages.errors import Location, suggest
 if TYPE_CHECKING:
     from ..messages.errors import Findings
 
-__all__ = ["Source", "open_source", "read_bytes"]
-
 _NEWLINE = re.compile(r"\r\n|\n|\r")
 _CONTROL = re.compile("[\x01-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
 

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from ..messages.errors import Location
 
-__all__ = ["Alike", "alike", "same"]
-
 _AS_DRAWN = str.maketrans(
     "OoIl" + "АВЕКМНОРСТХаеорсух" + "ΑΒΕΖΗΙΚΜΝΟΡΤΥΧο",
     "0011" + "ABEKMH0PCTXae0pcyx" + "ABEZH1KMN0PTYX0",

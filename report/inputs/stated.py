@@ -31,20 +31,6 @@ if TYPE_CHECKING:
     Draws = tuple[float, ...]
     Read = Callable[[str, Declared, Location], Draws | None]
 
-__all__ = [
-    "EXAMPLE",
-    "LARGEST",
-    "PERCENT",
-    "SHAPES",
-    "Conventions",
-    "Of",
-    "StatedErrors",
-    "StatementError",
-    "covariance",
-    "read_statement",
-    "split",
-]
-
 EXAMPLE = "U = 0.03, k = 2"
 MOST_K = 64
 """No factor is larger: that of one degree of freedom is 64 for 99 %."""

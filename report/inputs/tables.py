@@ -13,8 +13,6 @@ from .parameters import wrong_type
 if TYPE_CHECKING:
     from .tomlfile import TomlFile
 
-__all__ = ["TomlTables"]
-
 
 class TomlTables:
     """What is read of the tables of a TOML file.

@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     Read = Callable[[str, Location], Result | None]
     Number = tuple[Printed, tuple["TakenError", ...]]
 
-__all__ = ["EXAMPLE", "Origin", "Taken", "TakenError", "alone", "open_result", "read_taken"]
-
 EXAMPLE = '{ from = "balance/values.json", cell = "m" }'
 _KEYS = TABLES["parameters", ANY]
 Origin = tuple[str, str]

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ..messages.errors import Findings
     from .sources import Source
 
-__all__ = ["TomlFile", "read_toml"]
-
 _KEY = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|[A-Za-z0-9_-]+')
 _STRING = re.compile(
     r'"""(?:\\[\s\S]|(?!""")[^\\])*"{3,5}'

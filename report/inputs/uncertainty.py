@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from .number_text import Declared
     from .tables import TomlTables
 
-__all__ = ["SharedError", "Stated", "read_bare", "read_uncertainty"]
-
 SECTION = "uncertainty"
 DIGITS = (1, 2)
 """How many digits an uncertainty may have: more would say nothing (JCGM 100, 7.2.6)."""

@@ -23,8 +23,6 @@ from ..sheet import Sheet
 from .chain import Chain, SheetDerivatives
 from .sensitivity import NumericSweep
 
-__all__ = ["bounds"]
-
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 

@@ -25,8 +25,6 @@ from ..plan.kept import as_data, of_data, of_sheet
 from ..plan.slopes import NodeDerivatives, Slope, with_unknowns
 from ..sheet import Sheet
 
-__all__ = ["Chain", "Level", "SheetDerivatives", "SparseRows"]
-
 Numbered = NDArray[np.intp]
 _NONE = np.zeros(0, dtype=np.intp)
 

@@ -14,13 +14,12 @@ from ..cells.values import Status
 from ..column import Column, Formula
 from ..engines.exact import laid_out
 from ..messages.diagnostics import Check, Location
+from ..result.agreement import LIMIT
 from ..sheet import Sheet
-from .engines import EPS, LIMIT, Judge
+from .engines import EPS, Judge
 
 if TYPE_CHECKING:
     from ..workbook import Claimed
-
-__all__ = ["CLAIM", "claims"]
 
 CLAIM = "claim"
 """The kind of these checks."""

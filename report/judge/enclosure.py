@@ -30,8 +30,6 @@ from ..sheet import Column, Reference, Sheet
 from .chain import Chain, SheetDerivatives
 from .sensitivity import ForwardSweep
 
-__all__ = ["Enclosure"]
-
 HALVINGS = 60
 SETTLED = 2.0**-50
 """What a step may move a point, relatively, that is near enough to a root."""

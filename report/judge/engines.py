@@ -25,8 +25,6 @@ from ..sheet import Column, Sheet
 from .bounds import bounds
 from .readers import Case, Reading
 
-__all__ = ["LIMIT", "Agreement", "Judge", "compare_all"]
-
 EPS = float(np.finfo(float).eps)
 
 UNSETTLED = "#STEPS!"

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ..result.uncertain import Misfit
     from ..workbook import Curve, SquareSum
 
-__all__ = ["names", "oddities"]
-
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
 CONSTANTS, WORDS, TWICE = "constants", "words", "twice"
 EXPECTED, LEFT_OUT = "expected", "left out"

@@ -26,17 +26,6 @@ from ..machine.programs import ProgramFailed, run
 from ..machine.scratch import scratch
 from ..sheet import Given, Sheet
 
-__all__ = [
-    "ALWAYS_RECALCULATE",
-    "Book",
-    "Case",
-    "Reading",
-    "of_case",
-    "of_values",
-    "run_javascript",
-    "run_workbook",
-]
-
 SCRIPT_SECONDS = 120
 BOOK_SECONDS = 300
 """How long a program may take."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..inputs.measurements import Measurements
     from ..result.result import Report
 
-__all__ = ["SCATTERS", "checks", "names", "twice"]
-
 SCATTERS = "scatter"
 """The kind of these checks."""
 PAIRED = "paired"

@@ -16,8 +16,6 @@ from ..inputs.inputs import Inputs
 from ..inputs.measurements import Measurements
 from ..sheet import RepeatAxis, Sheet
 
-__all__ = ["part", "with_own"]
-
 FEWEST = 2
 """Tests without which there is no pair."""
 

@@ -20,8 +20,6 @@ from ..plan.order import places
 from ..plan.slopes import NodeDerivatives, Slope
 from .chain import Chain, Numbered, SparseRows
 
-__all__ = ["ForwardSweep", "NumericSweep", "without_rounding"]
-
 Array = NDArray[np.float64]
 
 AT_ONCE = 1 << 22

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..result.result import Report
     from ..workbook import SquareSum
 
-__all__ = ["Outlier", "outliers", "suspected"]
-
 Tests = tuple[tuple[str, int], ...]
 """Each with the index set that it is of."""
 MOST_ALIKE = 3

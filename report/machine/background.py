@@ -14,8 +14,6 @@ from typing import Any, Generic, TypeVar
 from .memory import ample
 from .stopping import unstoppable, worker
 
-__all__ = ["Background", "LateArgument", "serve"]
-
 T = TypeVar("T")
 _PATIENCE = 5.0
 """Seconds in which a process that is told to end takes back what it has begun."""

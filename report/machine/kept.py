@@ -24,8 +24,6 @@ from .provenance import sources, versions
 from .stopping import unstoppable
 from .timing import timed
 
-__all__ = ["SETTING", "kept", "nothing_kept", "place", "told"]
-
 SETTING = "LOOPSHEET_CACHE"
 """The variable that names another folder; if it is empty, nothing is kept."""
 

@@ -24,8 +24,6 @@ from ..files.form import load
 from ..files.manifest import NAME, Manifest
 from .provenance import ROOT
 
-__all__ = ["Server"]
-
 PATIENCE = 20.0
 """Seconds for which a page that asks for news is kept waiting."""
 

@@ -6,8 +6,6 @@ import atexit
 import gc
 import os
 
-__all__ = ["ample"]
-
 NEW = 100_000
 """So many objects more than before are looked through; of 700, as Python has it, it is a tenth of a build."""
 

@@ -10,8 +10,6 @@ from pathlib import Path
 
 from .stopping import unstoppable
 
-__all__ = ["ProgramFailed", "run"]
-
 _SHOWN = 300
 """How much of a program's message is shown."""
 

@@ -12,8 +12,6 @@ from pathlib import Path
 
 from ... import __version__
 
-__all__ = ["PARTS", "ROOT", "files", "processor", "sources", "versions"]
-
 ROOT = Path(__file__).resolve().parents[2]
 """The folder of the package."""
 

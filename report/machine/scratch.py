@@ -21,8 +21,6 @@ from .stopping import unstoppable
 if sys.platform != "win32":
     import fcntl
 
-__all__ = ["PREFIX", "left_over", "locked", "scratch"]
-
 PREFIX = ".loopsheet-"
 _NAME = f"{PREFIX}{'[a-z0-9_]' * 8}"
 """How `tempfile` calls them; nobody calls a folder of theirs so."""

@@ -14,8 +14,6 @@ from ..messages.errors import EXHAUSTED, Diagnostic, Location, OutputError, diag
 from .scratch import PREFIX, left_over, locked, scratch
 from .stopping import unstoppable
 
-__all__ = ["half_moved", "own", "put", "replaced", "staged", "strangers", "written"]
-
 PATIENCE = 60.0
 """Seconds to wait for somebody else who builds into the same folder."""
 

@@ -6,8 +6,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["RUN", "Timing", "timed"]
-
 
 class Timing:
     """The seconds of some parts, in the order in which they were begun first."""

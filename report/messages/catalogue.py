@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["CATALOGUE", "GROUPS", "Entry"]
-
 
 class Entry(NamedTuple):
     """A title for lists of codes, and the templates of the sentences."""

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, TextIO
 
-__all__ = ["Check", "Diagnostic", "Location", "VisibleStream", "render", "render_all", "visible"]
-
 _TAB = 4
 _BEFORE = 40
 """Terminal columns kept before the caret when a line is too long to be shown whole."""

@@ -18,8 +18,6 @@ from ..workbook import Claimed
 if TYPE_CHECKING:
     from .body import MethodBody
 
-__all__ = ["claimed", "derivative", "in_fractions"]
-
 _NO_ALGEBRA = "{what} is of rows in groups, of which no proof is known: claim it without"
 
 

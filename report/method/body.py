@@ -45,8 +45,6 @@ from .lines import (
 from .places import Optionals, Standing
 from .temperatures import is_difference
 
-__all__ = ["MethodBody"]
-
 _EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
 """By their names in a body: of several formulas, and over the rows of one."""
 

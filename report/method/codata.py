@@ -7,8 +7,6 @@ import difflib
 from ..column import SheetError
 from ..messages.errors import listing
 
-__all__ = ["adjusted"]
-
 _LETTERS = {
     **{"R": "molar gas constant", "N_A": "Avogadro constant", "F": "Faraday constant"},
     **{"k": "Boltzmann constant", "k_B": "Boltzmann constant", "h": "Planck constant"},

@@ -13,8 +13,6 @@ from .body import MethodBody
 from .errors import CURRENT, WatchedBody
 from .made import workbook_of
 
-__all__ = ["Method"]
-
 
 class _Declaring(type):
     """Makes a workbook of the body of a class."""

@@ -21,8 +21,6 @@ from ..messages.errors import suggest
 from .body import MethodBody
 from .lines import ComputedLine, Declaration, FitLine, PointsLine, TakenLine
 
-__all__ = ["CURRENT", "WatchedBody", "current", "named_next", "told_together"]
-
 P = ParamSpec("P")
 T = TypeVar("T")
 

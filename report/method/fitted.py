@@ -26,8 +26,6 @@ from ..quantity import Bounds
 from ..workbook import Curve, FigureSpec
 from .lines import spaced
 
-__all__ = ["DeclaredFit", "stated_of", "told_apart"]
-
 STATED = "stated"
 POINTS = 65
 """Of a fitted curve: straight lines between so many look like one."""

@@ -33,9 +33,6 @@ from .errors import current, named_next, told_together
 from .fitted import stated_of
 from .lines import TakenLine, stated_unit
 
-__all__ = ["by", "expected", "numbered", "sketch", "standing", "uncertainty"]
-
-
 # --- what symbols of a ledger stand for --------------------------------------------------------------------
 
 

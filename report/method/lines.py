@@ -18,28 +18,6 @@ from ...derivations.vocabulary import Quantity, amiss
 from ..column import Limit, SheetError
 from ..quantity import LARGEST, SMALLEST, Bounds, behind
 
-__all__ = [
-    "FUNCTIONS",
-    "ComputedLine",
-    "Declaration",
-    "FitLine",
-    "InputLine",
-    "PointsLine",
-    "TakenLine",
-    "UnknownLine",
-    "checked_label",
-    "exact",
-    "in_si",
-    "none_of",
-    "refuse_zero",
-    "size_of",
-    "spaced",
-    "stated_unit",
-    "unit_in_si",
-    "with_unit",
-]
-
-
 FUNCTIONS = (
     *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
     *("Abs", "Max", "Min"),

@@ -18,8 +18,6 @@ from ..sheet import Sheet
 from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
 from .body import MethodBody
 
-__all__ = ["workbook_of"]
-
 
 def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has.

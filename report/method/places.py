@@ -16,8 +16,6 @@ from ..quantity import Bounds
 from ..sheet import Sheet
 from ..workbook import Either
 
-__all__ = ["Optionals", "Standing"]
-
 
 class Standing(list[dict[Any, Any]]):
     """What symbols stand for, level by level: the last says most."""

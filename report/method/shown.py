@@ -15,8 +15,6 @@ from ..named import name_of
 from ..workbook import FigureSpec, TableSpec
 from .errors import current, told_together
 
-__all__ = ["drawing", "plot", "table", "trace"]
-
 
 @told_together
 def plot(

@@ -20,8 +20,6 @@ from ..axis import Axis
 from ..column import Column, Formula, shown_in
 from ..named import name_of
 
-__all__ = ["is_difference"]
-
 _MOVE = Symbol("move", real=True)
 _FAR = 10**4
 """By how much, up and down: farther than cells lie apart, so that none is the largest in both."""

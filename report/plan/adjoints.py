@@ -25,8 +25,6 @@ from ..cells.grid import Product
 from .order import places
 from .slopes import NodeDerivatives
 
-__all__ = ["Adjoint", "Adjoints", "Grouping", "Solution", "Term", "Unfollowed", "adjoints"]
-
 
 class Unfollowed(Exception):
     """The ways back from a result are none that are followed here."""

@@ -57,8 +57,6 @@ from .lowering import RESERVED, lowered
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, RowSum, Total, free_name
 from .slopes import NodeDerivatives, Slope, unknown_of
 
-__all__ = ["Derivatives", "derivatives", "rounding"]
-
 PASSES = 20
 """How many passes of a loop are followed: each leaves a small share of what the last one did."""
 _NO_FUNCTIONS = (Derivative, Subs, Heaviside)

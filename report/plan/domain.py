@@ -54,8 +54,6 @@ from ..quantity import Bounds
 from ..sheet import Sheet
 from .nodes import Leaf, RowOrder, RowSum
 
-__all__ = ["assumed", "defined", "is_positive", "positive", "typed", "typed_symbols"]
-
 _EVERYWHERE = (
     Abs, Add, And, ExprCondPair, Max, Min, Mul, Not, Or, Relational,
     atan, ceiling, cos, cosh, exp, floor, sign, sin, sinh, tanh,

@@ -11,8 +11,6 @@ from ..content import Untold
 from ..machine.kept import kept
 from ..sheet import Sheet
 
-__all__ = ["as_data", "of_data", "of_sheet"]
-
 T = TypeVar("T")
 
 

@@ -17,8 +17,6 @@ from .domain import defined, is_positive, positive, typed_symbols
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowOrder, RowSum, Total
 from .special import SPECIAL, in_elementary_terms
 
-__all__ = ["lowered", "lowered_column"]
-
 _REAL = Symbol("_", real=True)
 
 RESERVED = ("numpy", "run")

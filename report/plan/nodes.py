@@ -15,23 +15,6 @@ from ..axis import Axis, MemberAxis
 from ..column import Column
 from .order import Word
 
-__all__ = [
-    "GivenNode",
-    "Leaf",
-    "LoopNode",
-    "Map",
-    "Node",
-    "Part",
-    "Plan",
-    "RootNode",
-    "RowOrder",
-    "RowSum",
-    "Total",
-    "expressions",
-    "free_name",
-    "taken_over",
-]
-
 Kind = Literal["cells", "total", "part", "size", "kept", "ordinal"]
 
 

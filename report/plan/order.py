@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-__all__ = ["Word", "places"]
-
 Word = Literal["sum", "median", "max", "min"]
 """What is taken of terms: all of them added, or what stands in their order of size at some places."""
 

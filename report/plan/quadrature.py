@@ -18,8 +18,6 @@ from typing import Any
 import mpmath
 from sympy import Add, Expr, Float, Integral, Rational
 
-__all__ = ["in_nodes"]
-
 _A_DIGIT = Rational(10, 9)
 """The nodes that make one more digit right, where those half axes sum to 10^(9/20) = 2.8 or more."""
 

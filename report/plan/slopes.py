@@ -10,8 +10,6 @@ from ..column import Column, Root
 from ..sheet import Sheet
 from .order import Word
 
-__all__ = ["NodeDerivatives", "Slope", "unknown_of", "with_unknowns"]
-
 
 @dataclass(frozen=True)
 class Slope:

@@ -23,8 +23,6 @@ from sympy import Add, Expr, Float, Integer, Integral, Rational, bernoulli, beta
 
 from .quadrature import in_nodes
 
-__all__ = ["EXACT", "SPECIAL", "in_elementary_terms"]
-
 SPECIAL = (beta, betainc, Integral)
 
 DOUBLE, EXACT = 18, 60

@@ -10,8 +10,6 @@ from sympy.printing.str import StrPrinter
 
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Part, Plan, RootNode, Total, expressions
 
-__all__ = ["text"]
-
 
 class _Printer(StrPrinter):
     """Formulas as a person types them."""

@@ -21,8 +21,6 @@ from ..result.verdict_words import holds
 if TYPE_CHECKING:
     from ..result.result import Comparison, Report
 
-__all__ = ["Accepted", "RowChange", "accepted"]
-
 _BLANK = " \t\u00a0"
 _BYTE_ORDER_MARK = "\ufeff".encode()
 

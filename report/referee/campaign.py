@@ -21,8 +21,6 @@ from ..result.verdict import Witness
 from ..sheet import Given, Sheet
 from ..uncertainty.propagation import Spread
 
-__all__ = ["COVERAGE", "Array", "Campaign", "Unknown"]
-
 Array = NDArray[np.float64]
 T = TypeVar("T")
 

@@ -16,8 +16,6 @@ from ..sheet import SheetError
 from .campaign import Array
 from .problem import Box, Problem
 
-__all__ = ["Certificate", "excluded"]
-
 MOST = 1 << 24
 """Derivatives that are kept at once; of a larger campaign nothing is made certain."""
 

@@ -29,8 +29,6 @@ from ..result.verdict import (
     Verdict,
 )
 
-__all__ = ["beside", "compare", "missing_as_expected", "print_as", "prints_same", "refereed"]
-
 DIGITS = 15
 """Of a decimal number, how many every double keeps."""
 

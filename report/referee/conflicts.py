@@ -15,8 +15,6 @@ from .certificate import Certificate
 from .minimax import Best, best, meet
 from .problem import Problem
 
-__all__ = ["Conflict", "Conflicts"]
-
 
 @dataclass(frozen=True)
 class Conflict:

@@ -10,8 +10,6 @@ from fractions import Fraction
 
 from ..quantity import Printed
 
-__all__ = ["is_slip", "moved", "respelt", "slips"]
-
 DIGITS = "0123456789"
 
 

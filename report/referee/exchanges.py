@@ -15,8 +15,6 @@ from .minimax import best
 from .problem import Box, Problem
 from .search import Explained, Search
 
-__all__ = ["columns", "exchanged_in_tables", "exchanged_inputs", "exchanged_rows", "orders"]
-
 
 def exchanged_in_tables(search: Search) -> Iterator[Explained]:
     """Two published values of a column that stand in each other's place."""

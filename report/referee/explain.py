@@ -39,8 +39,6 @@ from .scales import (
 )
 from .search import Explained, Search
 
-__all__ = ["Doubts", "Explained", "explanations", "possibilities"]
-
 Kind = Callable[[Search], Iterator[Explained]]
 
 KINDS: tuple[tuple[Kind, ...], ...] = (

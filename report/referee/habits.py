@@ -22,15 +22,6 @@ from .problem import Box, Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-__all__ = [
-    "computed_from_printed",
-    "every_row",
-    "other_conventions",
-    "other_rows",
-    "rounded_constants",
-    "without_a_test",
-]
-
 NEUTRAL = ("0", "1")
 """What a correction is that is not made, and a factor."""
 CHOSEN, MOST_DIGITS = 3, 6

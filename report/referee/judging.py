@@ -33,14 +33,12 @@ from ..sheet import Given, Sheet
 from .campaign import Campaign
 from .certificate import Certificate
 from .comparison import missing_as_expected, prints_same
-from .explain import Explained, explanations, possibilities
+from .explain import explanations, possibilities
 from .labels import Numbers, fits, labels
 from .minimax import Best, counted, meet
 from .problem import Problem
-from .search import Search
+from .search import Explained, Search
 from .values import verdicts
-
-__all__ = ["referee"]
 
 NEAR = (EXACT, REACHABLE, WITHIN)
 """Of values that are not out of reach by themselves."""

@@ -16,8 +16,6 @@ from ..inputs.published import PublishedValue
 from ..result import verdict
 from ..result.verdict import Referee
 
-__all__ = ["as_data", "of_data"]
-
 
 def as_data(found: Referee, inputs: Inputs) -> Any:
     """What was found of some inputs, as data."""

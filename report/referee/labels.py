@@ -10,11 +10,9 @@ from math import inf, isfinite, isnan
 from ..result.verdict import Fit, Relabelled
 from ..result.verdict_words import mismatch as in_words
 from ..sheet import Column
-from .explain import Explained
 from .minimax import best, counted
 from .problem import Box, Problem
-
-__all__ = ["fits", "labels"]
+from .search import Explained
 
 Numbers = Mapping[str, Collection[str]]
 

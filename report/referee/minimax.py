@@ -17,8 +17,6 @@ from ..engines.elementary import exp, log
 from .campaign import Array
 from .problem import ENOUGH, Box, Problem
 
-__all__ = ["Best", "best", "counted", "meet"]
-
 STEPS = 100
 PATIENCE = 5
 """After how many steps that gain next to nothing a search that only has to get somewhere gives up."""

@@ -18,8 +18,6 @@ from .minimax import Best, best
 from .problem import Box, Problem
 from .search import HOPELESS, LOOKED_INTO, Explained, Search
 
-__all__ = ["freed", "misprint", "misprints", "slipped", "two_misprints"]
-
 RANGE = 10.0
 """A misprinted number is looked for between a tenth and ten times what is printed."""
 PIECES = 160

@@ -5,8 +5,6 @@ from __future__ import annotations
 from ...derivations.equation import Derivation, Ledger
 from ..sheet import Column, Sheet
 
-__all__ = ["numbers_of"]
-
 
 def numbers_of(sheet: Sheet, ledger: Ledger) -> dict[str, list[str]]:
     """The source's own numbers of the equations that each column is computed by, ``(7)``.

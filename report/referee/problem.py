@@ -27,8 +27,6 @@ from ..sheet import Given, Sheet
 from .campaign import Array, Campaign, Unknown
 from .ways import Way
 
-__all__ = ["ENOUGH", "Box", "Here", "Problem"]
-
 ENOUGH = 1e-6
 """What is less makes no difference, in half units of the last digit."""
 

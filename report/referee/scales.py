@@ -16,14 +16,6 @@ from .campaign import Array
 from .problem import Box, Problem
 from .search import Explained, Search
 
-__all__ = [
-    "misplaced_inputs",
-    "misplaced_tables",
-    "misplaced_together",
-    "truncated_inputs",
-    "truncated_tables",
-]
-
 POWERS = (-1, 1, -2, 2, -3, 3, -6, 6)
 """By which powers of ten a unit or a decimal point may be wrong, the likelier first."""
 FACTORS = {"2": Fraction(2), "1/2": Fraction(1, 2)}

@@ -15,8 +15,6 @@ from .conflicts import Conflict, Conflicts
 from .minimax import Best, best, meet
 from .problem import Box, Problem
 
-__all__ = ["HOPELESS", "LOOKED_INTO", "Explained", "Search"]
-
 HOPELESS = 3.0
 """What is promised to stay so many half units off is not looked into further, and stays open."""
 LOOKED_INTO = 6

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..inputs.published import PublishedValue
     from ..result.uncertain import Budget
 
-__all__ = ["compare_uncertainties"]
-
 NOTHING = "nothing is known of its uncertainty"
 NO_FREEDOM = "nothing is known of the degrees of freedom of its uncertainty"
 FINER = 5

@@ -15,8 +15,6 @@ from .comparison import prints_same
 from .minimax import best
 from .problem import Problem
 
-__all__ = ["COVERAGE", "verdicts"]
-
 HALVINGS = 50
 MOST = 1 << 24
 """Cells that are computed at once in search of what is furthest."""

@@ -15,8 +15,6 @@ from ..engines.numpy import Program, evaluate
 from ..sheet import Axis, Column, Given, Sheet
 from .campaign import Array, Campaign
 
-__all__ = ["Way", "from_printed", "over_rows"]
-
 
 @dataclass(frozen=True, eq=False)
 class Way:

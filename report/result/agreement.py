@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["LIMIT", "Agreement"]
-
 LIMIT = 8.0
 """The difference, in eps times condition, at which an engine is no longer believed."""
 

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 from ..messages.diagnostics import Check
 
-__all__ = ["Behaviour", "Card", "CardRow", "Cards", "NoCard", "Point", "Prescribed", "TypedValue"]
-
 
 class TypedValue(NamedTuple):
     """A number to be typed in: its word in the code, its unit, and whether it was solved for."""

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 
 from .card import Card
 
-__all__ = ["TYPED", "head", "misses", "returned", "rows", "sources", "typed"]
-
 TYPED = ("parameter", "value", "unit", "what it is")
 """The head of what is typed in."""
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..workbook import SquareSum
     from .result import Report
 
-__all__ = ["RARE", "SIGNIFICANT", "freedom", "head", "largest", "number", "tail", "tied", "ties"]
-
 RARE = 0.01
 """A sum of squares that is as large, or as small, less often than this is not taken for chance."""
 SIGNIFICANT = 0.05

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ..inputs.limits import Limits
     from .result import Report
 
-__all__ = ["accepted", "conforming", "decision", "lines", "probabilities", "risk", "sentence", "undecided"]
-
 
 def sentence(found: Conformity) -> str:
     """The decision: ``alpha_mean conforms: it lies within the acceptance limits``."""

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from .result import Report
 from .uncertain import Budget
 
-__all__ = ["BestChoice", "Needed", "Planned"]
-
 
 @dataclass(frozen=True)
 class BestChoice:

@@ -21,25 +21,10 @@ from .verdict import OTHERWISE, UNAMENDED, UNEXPLAINED, UNPINNED, UNREASONED
 
 if TYPE_CHECKING:
     from ...derivations.proved import Proof
-    from ..inputs.inputs import Inputs, PublishedValue
+    from ..inputs.inputs import Inputs
+    from ..inputs.published import PublishedValue
     from .agreement import Agreement
     from .result import Comparison, Report
-
-__all__ = [
-    "CONFORMITY",
-    "MISPRINTS",
-    "TOGETHER",
-    "Check",
-    "checks",
-    "names_of",
-    "of_comparison",
-    "of_diagnostics",
-    "of_engine",
-    "of_limits",
-    "of_proof",
-    "of_referee",
-    "table_names",
-]
 
 CONFORMITY = "conformity"
 """The kind of the checks of limits."""

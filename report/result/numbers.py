@@ -13,25 +13,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_HALF_UP, Context, Decimal, localcontext
 
-__all__ = [
-    "LEADING",
-    "MOST",
-    "RAISED",
-    "SURE",
-    "Numeral",
-    "at",
-    "chance",
-    "decimals",
-    "last_place",
-    "order",
-    "read",
-    "rounded",
-    "shown",
-    "stated",
-    "table_format",
-    "uncertainty",
-]
-
 MOST = 2
 """Digits of an uncertainty, unless somebody wants fewer (JCGM 100, 7.2.6)."""
 SURE = 6

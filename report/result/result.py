@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from ..cells.marks import Marks
 from ..cells.values import Cell, Status, Values
 from ..files.values import Unit
-from ..inputs.inputs import Inputs, PublishedValue
+from ..inputs.inputs import Inputs
+from ..inputs.published import PublishedValue
 from ..messages.diagnostics import Check
 from ..quantity import Printed, behind
 from ..sheet import Column, Given, Iterated, Sheet
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
     from ...derivations.equation import Erratum, Ledger
     from ...derivations.proved import Proof
     from ..engines.exact import ExactValues
-
-__all__ = ["Comparison", "Plotted", "Report", "Shown"]
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from .result import Report
     from .uncertain import Budget
 
-__all__ = ["foremost", "shares"]
-
 K = TypeVar("K")
 SEEN = 0.005
 """Shares of a variance that are nearer than this are told apart by nobody."""

@@ -13,8 +13,6 @@ from ..sheet import Given
 if TYPE_CHECKING:
     from .result import Report
 
-__all__ = ["of_column", "statements"]
-
 MOST = 12
 """Standard uncertainties that are listed; of more, the least and the largest are told."""
 _SIZES = re.compile(r"u\(.*\)|.*\([0-9]+\)")

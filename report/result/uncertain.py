@@ -18,21 +18,6 @@ if TYPE_CHECKING:
     from ..inputs.taken import Origin
     from ..laws import Law
 
-__all__ = [
-    "TOLERANCE",
-    "Budget",
-    "Conformity",
-    "Contribution",
-    "Decision",
-    "Distributed",
-    "ErrorSource",
-    "Influence",
-    "Misfit",
-    "Together",
-    "Uncertainties",
-    "draws_of",
-]
-
 TOLERANCE = 1e-3
 """An eigenvalue that is a smaller part of the largest one tells nothing of its own."""
 

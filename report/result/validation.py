@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .findings import Check, checks
+from ..messages.diagnostics import Check
+from .findings import checks
 from .verdict import UNEXPECTED
 
 if TYPE_CHECKING:
     from .result import Report
-
-__all__ = ["Example", "Validation"]
-
 
 NOTHING = "NOTHING TO COMPARE"
 """Said where nothing is published, so that no number was held against another."""

@@ -12,32 +12,6 @@ from dataclasses import dataclass
 
 from ..inputs.published import PublishedValue
 
-__all__ = [
-    "ALL",
-    "EXACT",
-    "INPUT",
-    "NOT_CHECKABLE",
-    "NOT_FOUND",
-    "OTHERWISE",
-    "REACHABLE",
-    "UNAMENDED",
-    "UNEXPECTED",
-    "UNEXPLAINED",
-    "UNPINNED",
-    "UNREACHABLE",
-    "UNREASONED",
-    "WITHIN",
-    "Change",
-    "Explanation",
-    "Fit",
-    "Referee",
-    "Relabelled",
-    "TableVerdict",
-    "Tried",
-    "Verdict",
-    "Witness",
-]
-
 EXACT = "exact"
 """The recomputed value prints as published."""
 REACHABLE = "reachable"

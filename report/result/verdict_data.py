@@ -15,8 +15,6 @@ from ..files.form import alike
 from . import verdict_words as words
 from .verdict import Change, Explanation, Fit, Referee, Relabelled, TableVerdict, Verdict, Witness
 
-__all__ = ["bounds", "certain", "data", "short"]
-
 DIGITS = 6
 """Significant digits; of a mismatch also decimals, for a search is content with a millionth."""
 

@@ -11,8 +11,6 @@ from ..inputs.limits import Limits
 from ..laws import Array, Law
 from ..result.uncertain import Budget, Conformity, Decision
 
-__all__ = ["beyond", "beyond_each", "conformity"]
-
 
 def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     """The probability that an error is larger than z standard uncertainties.

@@ -20,8 +20,6 @@ from ..result.uncertain import ErrorSource
 from .conformity import beyond_each
 from .freedom import of_sum
 
-__all__ = ["Convolved", "convolved"]
-
 Array = NDArray[np.float64]
 
 FINE = 2048

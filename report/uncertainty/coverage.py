@@ -14,8 +14,6 @@ from ..laws import Law
 from ..result.uncertain import ErrorSource
 from .convolution import Convolved, convolved
 
-__all__ = ["assigned", "coverage"]
-
 
 def assigned(
     sources: Sequence[ErrorSource],

@@ -27,8 +27,6 @@ from ..sheet import Sheet
 from ..workbook import Design
 from .propagation import Spread
 
-__all__ = ["NotPlanned", "Planner"]
-
 Array = NDArray[np.float64]
 K = TypeVar("K")
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from ..distribution import MOST_DOF
 from ..result.uncertain import ErrorSource
 
-__all__ = ["effective", "of_sum", "with_correlated"]
-
 Array = NDArray[np.float64]
 
 

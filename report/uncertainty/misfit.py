@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["least_squares_of_errors"]
-
 Array = NDArray[np.float64]
 
 NOTHING = 1e-9

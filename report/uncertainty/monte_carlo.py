@@ -32,8 +32,6 @@ from ..sheet import Sheet
 from .second_order import root_of
 from .sources import correlated, given, sources
 
-__all__ = ["BEYOND", "MOST", "by_draws", "draw", "least"]
-
 Array = NDArray[np.float64]
 
 MOST = 1_000_000

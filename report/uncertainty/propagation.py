@@ -44,8 +44,6 @@ from .monte_carlo import by_draws
 from .second_order import COUNTS, SecondOrder, root_of
 from .sources import correlated, given, sources
 
-__all__ = ["Spread", "uncertainties"]
-
 Array = NDArray[np.float64]
 
 LARGEST = 300_000

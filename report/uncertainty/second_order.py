@@ -22,8 +22,6 @@ from ..judge.sensitivity import NumericSweep, without_rounding
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Formula, Iterated, Sheet
 
-__all__ = ["SecondOrder", "root_of"]
-
 Array = NDArray[np.float64]
 
 STEP = 1 / 16

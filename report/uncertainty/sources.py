@@ -15,8 +15,6 @@ from ..quantity import Printed
 from ..result.uncertain import ErrorSource
 from ..sheet import Column, Given
 
-__all__ = ["correlated", "given", "sources"]
-
 
 def sources(inputs: Inputs, values: Values) -> tuple[ErrorSource, ...]:
     """All errors of what was given, in the order of the sheet, then what is shared, and what was taken.

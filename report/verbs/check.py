@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from .common import folder_argument, format_argument, keeping_arguments, outcome, print_checks, studied, tell
 
 if TYPE_CHECKING:
+    from ..messages.diagnostics import Check
     from ..referee.accepting import Accepted
-    from ..result.findings import Check
     from ..result.result import Report
 
 HELP = "check the proofs, the engines against each other, and the published values"

@@ -14,34 +14,10 @@ from ..inputs.folders import WORD
 from ..messages.diagnostics import visible
 
 if TYPE_CHECKING:
-    from ..result.findings import Check
+    from ..messages.diagnostics import Check
     from ..result.result import Report
     from ..sheet import Column
     from ..study import Study
-
-__all__ = [
-    "BUG",
-    "FINDINGS",
-    "OK",
-    "USAGE",
-    "Progress",
-    "answer",
-    "count",
-    "find",
-    "find_one",
-    "folder_argument",
-    "folders_argument",
-    "format_argument",
-    "keeping_arguments",
-    "named",
-    "outcome",
-    "print_checks",
-    "result_argument",
-    "source_argument",
-    "studied",
-    "tell",
-    "told",
-]
 
 OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
 

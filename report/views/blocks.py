@@ -9,8 +9,6 @@ from typing import ParamSpec
 from ..messages.diagnostics import visible
 from . import markdown as md
 
-__all__ = ["Block", "Heading", "Snippet", "TextTable", "printers"]
-
 P = ParamSpec("P")
 
 

@@ -26,8 +26,6 @@ from ..result.uncertain import (
 )
 from .blocks import Block, TextTable, printers
 
-__all__ = ["FORMATS", "Besides", "notes", "number", "percent", "sentence"]
-
 WIDER = 1.02
 """So many times u, a standard deviation of draws is another number."""
 HEADER = ("source", "estimate", "u", "distribution", "dof", "contribution", "share")

@@ -15,8 +15,6 @@ from .budget import number
 from .checks import lines
 from .json import oddities
 
-__all__ = ["FORMATS"]
-
 
 def _blocks(card: Card) -> Iterator[Block]:
     """What to type in, what is returned, and what the card misses over the measured speeds."""

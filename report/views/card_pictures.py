@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..charts import BLUE, VERMILION
+from ..charts import BLUE, INK, VERMILION
 from ..result.card import Card, Point
 from ..result.result import Report
 from . import drawing
-from .drawing import GREY, INK
+from .drawing import GREY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["draw_imprints", "draw_restitutions", "draw_returned"]
 
 _COLOURS = (BLUE, VERMILION, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Told apart by those who see few colours, too."""

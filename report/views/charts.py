@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-__all__ = ["draw"]
-
 BESIDE_END: tuple[Place, ...] = (
     (5, -3, "left", "top"),
     (-4, 4, "right", "bottom"),

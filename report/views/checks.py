@@ -8,11 +8,8 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from ..messages.diagnostics import visible
-from ..result.findings import Check
+from ..messages.diagnostics import Check, visible
 from . import markdown as md
-
-__all__ = ["FORMATS", "as_github", "as_json", "as_junit", "as_markdown", "lines", "summary"]
 
 Checks = Sequence[Check]
 Details = Mapping[str, Any]

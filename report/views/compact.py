@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from itertools import count, product
 from string import ascii_letters
 
-__all__ = ["short_cells", "short_markup", "short_script", "short_style"]
-
 # --- JavaScript ------------------------------------------------------------------------------------------
 
 _TOKEN = re.compile(

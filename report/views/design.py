@@ -12,8 +12,6 @@ from ..result.numbers import rounded
 from .blocks import Block, TextTable, printers
 from .budget import notes, number, percent, sentence
 
-__all__ = ["FORMATS"]
-
 
 def _header(plan: Planned) -> list[str]:
     """The names of the columns of the table, each with its unit."""

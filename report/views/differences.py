@@ -11,8 +11,6 @@ from ..messages.diagnostics import visible
 from ..quantity import behind
 from . import markdown as md
 
-__all__ = ["FORMATS", "as_markdown", "as_text", "moved", "reordered"]
-
 _WIDTH = 16
 """Characters of a name at least, so that values stand below each other."""
 

@@ -14,15 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..charts import BLUE as UNLOADING
 from ..charts import INK
-from ..charts import VERMILION as LOADING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["GREY", "INK", "LOADING", "PALE", "UNLOADING", "Array", "Labels", "Place"]
 
 Array = NDArray[np.float64]
 Place = tuple[float, float, str, str]

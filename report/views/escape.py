@@ -11,8 +11,6 @@ import unicodedata
 
 from markupsafe import Markup, escape
 
-__all__ = ["Markup", "html", "tex", "visible"]
-
 # What HTML cannot carry (control characters, lone surrogates, non-characters) or what would turn the
 # text around it (directional overrides and isolates), and line ends that a parser would change.
 _UNFIT = re.compile(

@@ -9,6 +9,8 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
+from markupsafe import Markup
+
 from ...derivations.equation import Equation
 from ...derivations.unit_text import is_pure
 from ..cells.values import Cell
@@ -21,15 +23,13 @@ from ..machine.staging import put
 from ..result.result import Report
 from . import live
 from .compact import short_markup, short_style
-from .escape import Markup, html
+from .escape import html
 from .issued import Issued
 from .live_uncertain import scatters
 from .mathml import mathml, mathml_block
 from .typeset import block
 from .units import unit_html
 from .writer import TEMPLATES, Writer
-
-__all__ = ["csp", "render", "write"]
 
 
 class HtmlWriter(Writer):

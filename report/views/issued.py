@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from ..result.result import Report
 
-__all__ = ["Issued"]
-
 
 @dataclass(frozen=True)
 class Issued:

@@ -27,8 +27,6 @@ from ..result.verdict import Verdict
 from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
 
-__all__ = ["manifest", "oddities", "proof_grounds", "proof_statuses", "values", "write"]
-
 
 def write(made: Issued, stage: Path) -> None:
     """Write values.json."""

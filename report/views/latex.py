@@ -9,6 +9,8 @@ import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from markupsafe import Markup
+
 from ...derivations.equation import Equation
 from ...derivations.unit_text import is_pure
 from ..document.material import Material
@@ -17,13 +19,11 @@ from ..document.parts import Item
 from ..document.tree import Display, Entry, Math, Number, Refer, Silent, Table, TableColumn, Unit
 from ..machine.staging import put
 from ..result.result import Report
-from .escape import Markup, tex
+from .escape import tex
 from .issued import Issued
 from .typeset import TEXT_WIDTH, block
 from .units import unit_tex
 from .writer import Writer
-
-__all__ = ["render", "write"]
 
 DAGGER = r"\textsuperscript{\textdagger}"
 """What stands behind a number that lies outside of what is expected."""

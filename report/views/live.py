@@ -35,8 +35,6 @@ from .live_files import given
 from .live_uncertain import digits, errors, uncertain
 from .writer import TEMPLATES
 
-__all__ = ["SCRIPTS", "BarPart", "data", "drawn", "limits", "parts", "script"]
-
 ALONE = ("random.js", "sensitivities.js", "second_order.js")
 """What a worker runs behind the program, and the page, too."""
 

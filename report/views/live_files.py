@@ -12,8 +12,6 @@ from ..quantity import Printed, behind
 from ..result.result import Report
 from ..sheet import Axis, GroupAxis, MemberAxis
 
-__all__ = ["given"]
-
 
 def given(report: Report) -> dict[str, Any]:
     """What was given, as it was printed, and all that is needed to save it as the files that it came from."""

@@ -14,8 +14,6 @@ from ..result.numbers import order
 from ..result.result import Report
 from ..sheet import Column, RepeatAxis
 
-__all__ = ["digits", "errors", "follows", "scatters", "uncertain"]
-
 FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE})
 """The shapes that a width tells whole."""
 LARGEST = 4_000_000

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 
 from .escape import visible
 
-__all__ = ["cell", "code", "table", "told"]
-
 _MEANS_SOMETHING = re.compile(r"([\\`*_\[\]<>|~$])")
 
 

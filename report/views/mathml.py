@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from ..document.notation import FUNCTIONS, NONE, Notation, read
-from .escape import Markup, html
-from .typeset import Typeset, relates
+from markupsafe import Markup
 
-__all__ = ["mathml", "mathml_block"]
+from ..document.notation import FUNCTIONS, NONE, Notation, read
+from .escape import html
+from .typeset import Typeset, relates
 
 _MINUS = Notation("sign", "−")
 _BEFORE_SIGN = frozenset("=([{")

@@ -12,8 +12,6 @@ from ..messages.errors import LoopsheetError, diagnose
 from . import latex
 from .issued import Issued
 
-__all__ = ["TexFailed", "TexMissing", "compile", "write"]
-
 PACKAGES = "latexmk texlive-latex-extra texlive-science texlive-fonts-recommended lmodern"
 """What Debian and Ubuntu call what is needed."""
 _PATIENCE = 300

@@ -12,19 +12,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..cells.address import index_text
+from ..charts import BLUE as UNLOADING
+from ..charts import INK
+from ..charts import VERMILION as LOADING
 from ..document.names import latex_names, name_latex
 from ..result.result import Comparison, Report
 from ..result.verdict import EXACT, REACHABLE, UNREACHABLE
 from ..result.verdict_words import CALLED
 from . import drawing
-from .drawing import INK, LOADING, PALE, UNLOADING
+from .drawing import PALE
 from .escape import visible
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["MOST_ROWS", "draw", "rows"]
 
 MOST_ROWS = 60
 """Of more published values, those are drawn that are out of reach or whose recomputation is furthest off."""

@@ -18,8 +18,6 @@ from matplotlib.transforms import Affine2D
 
 from ..document.notation import Notation, fragments, read
 
-__all__ = ["written"]
-
 Clip = tuple[float, float, float, float] | None
 
 _LOOKS = 'font-family="DejaVu Sans, Verdana, Noto Sans, Arial, sans-serif" stroke-linejoin="round"'

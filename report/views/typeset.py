@@ -9,8 +9,6 @@ from functools import lru_cache
 from ..document.names import Terms, join
 from ..document.notation import Notation, read
 
-__all__ = ["TEXT_WIDTH", "Typeset", "block", "relates", "width"]
-
 TEXT_WIDTH = 60.0
 """How wide a line may be beside the number of its equation, in letters."""
 _SHORT = 14.0

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
+from markupsafe import Markup
+
 from ...derivations.unit_text import is_pure, micro
 from ..result.numbers import RAISED
-from .escape import Markup, html, tex
-
-__all__ = ["unit_html", "unit_tex"]
+from .escape import html, tex
 
 _TOKEN = re.compile(
     r"(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(?:_\w+)?|[°%])"

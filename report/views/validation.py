@@ -11,8 +11,6 @@ from ..result.validation import Example, Validation
 from .blocks import Block, Heading, TextTable, printers
 from .checks import as_json, as_junit
 
-__all__ = ["FORMATS", "TITLE"]
-
 TITLE = "Validation of loopsheet"
 SIGNED = ("Date", "Place and machine", "Name and signature")
 """What is left for whoever files it: the record has no clock."""

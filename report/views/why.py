@@ -17,8 +17,6 @@ from ..result.result import Report
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root
 from ..workbook import Curve
 
-__all__ = ["equations_of", "why"]
-
 MOST = 12
 """Cells of one column that are told one by one."""
 _INDENT = "  "

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined, pass_context
 from jinja2.bccache import Bucket
 from jinja2.runtime import Context
+from markupsafe import Markup
 
 from ..document.material import Material
 from ..document.narrative import sections
@@ -19,9 +20,6 @@ from ..document.parts import Item, slug
 from ..document.said import Said
 from ..document.tree import Math, Node, Number, Refer, Section, Unit
 from ..machine.kept import kept
-from .escape import Markup
-
-__all__ = ["TEMPLATES", "Writer", "environment"]
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 

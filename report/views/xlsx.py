@@ -28,8 +28,6 @@ from .xlsx_pages import write_equations, write_published, write_report
 from .xlsx_style import Style
 from .xlsx_tables import write_axis, write_slopes, write_steps
 
-__all__ = ["render", "write"]
-
 _CREATED = datetime(2000, 1, 1)
 """No clock: the same bytes for the same report."""
 _FIGURES, _PUBLISHED = "figures", "published"

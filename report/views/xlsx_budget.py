@@ -26,8 +26,6 @@ from .xlsx_inputs import as_printed, same_sum
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
-__all__ = ["told_budgets", "write_budgets"]
-
 MOST_LIMITED = 20
 """Cells with limits that are no results, of which the budgets are written."""
 _COLUMNS = (

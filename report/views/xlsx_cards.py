@@ -9,8 +9,6 @@ from ..result import card_words as words
 from ..result.card import Card, Cards
 from .xlsx_style import Style
 
-__all__ = ["write_cards"]
-
 _WIDTHS = (24, 18, 16, 46, 22, 22)
 
 

@@ -17,8 +17,6 @@ from ..result.result import Report
 from ..workbook import FigureSpec
 from .xlsx_style import Style, number_format, said
 
-__all__ = ["charted", "write_charts"]
-
 _SIZE = {"width": 900, "height": 540}
 _ROWS = 29
 """Rows of the worksheet that a chart covers."""

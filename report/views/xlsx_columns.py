@@ -16,8 +16,6 @@ from xlsxwriter.worksheet import Worksheet
 
 from ..cells.grid import FilledDown, letters
 
-__all__ = ["ColumnwiseSheet"]
-
 _letters = lru_cache(letters)
 
 

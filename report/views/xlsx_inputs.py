@@ -15,8 +15,6 @@ from ..quantity import Printed, behind
 from ..result.result import Report
 from .xlsx_style import Style, open_format, said
 
-__all__ = ["GivenCells", "as_printed", "same_sum"]
-
 _MOST_NOTES = 500
 """Cells of a column that get a note of their own; a longer one has it in its header only."""
 _BELOW = 1000

@@ -11,8 +11,6 @@ from ..distribution import MOST_DOF, Shape
 from ..result.uncertain import Conformity, Decision
 from .xlsx_style import Style
 
-__all__ = ["SHAPES", "as_issued", "write_limits"]
-
 NONE = "none"
 _SHARES = {
     Shape.RECTANGULAR: "MIN(ABS({z})/SQRT(3),1)",

@@ -9,8 +9,6 @@ from ..cells.grid import CellBlock, Grid, letters
 from ..result.result import Report
 from .xlsx_style import Style
 
-__all__ = ["TITLE", "counted", "mark_outside"]
-
 TITLE = "Inside what is expected (negative: outside)"
 """What stands above margins."""
 

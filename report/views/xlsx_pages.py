@@ -18,8 +18,6 @@ from .xlsx_marks import TITLE, counted
 from .xlsx_style import Style, height, number_format
 from .xlsx_tables import mark_errors, write_block
 
-__all__ = ["write_equations", "write_published", "write_report"]
-
 _RESULT, _WITH_U = "Result", "with its uncertainty"
 Stated = Mapping[str, tuple[str, str]]
 """By cell, the formula that names its statement with its uncertainty, and what that says."""

@@ -10,8 +10,6 @@ from ...derivations.vocabulary import with_index
 from ..document.notation import fragments
 from ..result.numbers import Numeral, rounded
 
-__all__ = ["Style", "height", "number_format", "open_format", "said", "typical_format"]
-
 LONGEST = 32_000
 """Characters of a cell; Excel takes 32 767."""
 _LINE = 15

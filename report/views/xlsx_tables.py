@@ -12,8 +12,6 @@ from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said, typical_format
 
-__all__ = ["mark_errors", "write_axis", "write_block", "write_slopes", "write_steps"]
-
 _GROUP, _NAME, _MEANING, _SOURCE, _SYMBOL = range(FIRST_ROW - 5, FIRST_ROW)
 _WIDTH, _STEP_WIDTH, _INDEX_WIDTH, _NOTE_WIDTH = 15.0, 13.0, 9.0, 40.0
 _SMALL = 1.15

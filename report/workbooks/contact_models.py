@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...derivations.equation import Ledger
     from ..sheet import Sheet
 
-__all__ = ["WORKBOOK"]
-
 _POSITIVE = Bounds(low=0, low_open=True)
 _TOLD = {"x_m": "approach", "F_m": "greatest force", "t": "duration", "e": "restitution", "x_p": "imprint"}
 """What models predict."""

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..charts import Drawn
     from ..sheet import Sheet
 
-__all__ = ["DAMPED", "LOOPS", "columns", "over_speed"]
-
 _COLOURS = ("#56b4e9", "#cc79a7", VERMILION, "#009e73", BLUE, "#e69f00", "#f0e442")
 """Of Okabe and Ito: told apart by every eye."""
 _COLOUR_OF = {model.name: colour for model, colour in zip(MODELS, cycle(_COLOURS), strict=False)}

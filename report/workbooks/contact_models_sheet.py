@@ -20,8 +20,6 @@ from ..sheet import Column, Formula, Given, Limit, RepeatAxis, Root, Sheet
 from . import soft_impact
 from .soft_impact_sheet import TESTS, beta, e, masses, of_sheet, v, x_p
 
-__all__ = ["branches", "constants", "sheet"]
-
 _BODIES = ("E_1", "nu_1", "E_2", "nu_2")
 """What is given of both bodies besides their masses."""
 _BALL = "target_diameter"

@@ -49,8 +49,6 @@ if TYPE_CHECKING:
     from ..sheet import Sheet
     from ..workbook import Design
 
-__all__ = ["APART", "NEAR", "WORKBOOK", "SoftImpact", "sheet"]
-
 APART = Rational(104, 100)
 """The least ratio of two speeds. One per cent of an imprint depth moves the exponent of a pair by some
 .01 (alpha + 1)^2/(2 ln(v_2/v_1)), if the restitution is the same: at alpha = 1, the lower end of (4), by its

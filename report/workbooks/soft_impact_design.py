@@ -11,8 +11,6 @@ from ..method.words import Method, by, given, measured, standing
 from ..sheet import Sheet
 from ..workbook import Design
 
-__all__ = ["design"]
-
 _E, _V = "coefficient of restitution", "impact speed"
 
 

@@ -15,17 +15,18 @@ import numpy as np
 from ...derivations import soft_impact as model
 from ...derivations.rebuilt import evaluated
 from ..cells.layout import evenly
+from ..charts import BLUE as UNLOADING
+from ..charts import INK
+from ..charts import VERMILION as LOADING
 from ..engines.numpy_code import kernel
 from ..result.result import Report
 from ..views import drawing
-from ..views.drawing import GREY, INK, LOADING, PALE, UNLOADING, Array, Place
+from ..views.drawing import GREY, PALE, Array, Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from sympy import Expr
-
-__all__ = ["FRICTION", "SCHEMATIC", "draw_hysteresis", "draw_lankarani", "hysteresis", "lankarani"]
 
 SCHEMATIC = {"alpha": 1.3, "beta": 1.5, "x_m": 1.0, "x_p": 0.55, "Cprime": 1.0}
 """What the schematic figures assume, in reduced units; any test of a soft target looks like it."""

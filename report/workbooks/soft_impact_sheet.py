@@ -7,8 +7,6 @@ from dataclasses import replace
 from ..column import Column
 from .soft_impact import sheet
 
-__all__ = ["TESTS", "beta", "e", "masses", "of_sheet", "v", "x_p"]
-
 
 def of_sheet(given: frozenset[str], *names: str) -> tuple[Column, ...]:
     """Some of its columns; what is odd of them is said by the other workbook."""

@@ -17,7 +17,7 @@ from campaign_sizes import SIZES, Sizes
 from random_campaigns import KINDS, SHEETS, Node, drawn, printed_once, shares
 
 from loopsheet.report.engines import javascript
-from loopsheet.report.judge.engines import LIMIT
+from loopsheet.report.result.agreement import LIMIT
 
 pytestmark = pytest.mark.campaigns
 

@@ -3,7 +3,8 @@
 from sympy import Rational
 from sympy.core.parameters import evaluate
 
-from ..code import HERTZ, K_T, E, SimulationCode, Typed, e, nu
+from ....derivations.contact.damping import K_T
+from ..code import HERTZ, E, SimulationCode, Typed, e, nu
 from ..law import ForceLaw, rate, v_0, x
 
 with evaluate(False):

@@ -10,7 +10,8 @@ from functools import reduce
 from sympy import Expr, Float, Integer, Rational, Symbol, exp, sqrt
 from sympy.core.parameters import evaluate
 
-from ..code import HERTZ, TSUJI, E, SimulationCode, Typed, e, nu, zeta
+from ....derivations.contact.damping import zeta
+from ..code import HERTZ, TSUJI, E, SimulationCode, Typed, e, nu
 from ..law import ForceLaw
 
 ratio = Symbol("beta_n", positive=True)

@@ -14,8 +14,9 @@ import pytest
 from driving import Live
 
 from loopsheet.report.engines import exact
-from loopsheet.report.judge.engines import EPS, LIMIT, Judge
+from loopsheet.report.judge.engines import EPS, Judge
 from loopsheet.report.prepared import Prepared
+from loopsheet.report.result.agreement import LIMIT
 from loopsheet.report.result.result import Report
 from loopsheet.report.study import Study
 
