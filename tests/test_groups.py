@@ -126,6 +126,44 @@ def test_a_group_without_readings_has_no_value(tmp_path: Path, capsys: pytest.Ca
     assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
 
 
+OVER_GROUPS = """\
+from sympy import sqrt
+from loopsheet import Method, count, fit, groups, let, mean, measured, median, total, unknown
+
+class Line(Method, rows="readings", headline="b typical"):
+    "A line through the means of standards, and of what there is of them."
+    x = measured("1", "content")
+    y = measured("mV", "signal", positive=False)
+    std = groups("std")
+    x_m = let(mean(x, of=std), "content of a standard")
+    y_m = let(mean(y, of=std), "signal of a standard", "mV")
+    a, b = unknown("intercept", "mV"), unknown("slope", "mV")
+    line = fit(y_m, a + b * x_m)
+    p, q = unknown("intercept of the squares", "mV"), unknown("slope of the squares", "mV")
+    u_m = let(0.1 * y_m, "weight of a standard", "mV")
+    bent = fit(y_m, p + q * x_m**2, u=u_m)
+    many = let(count(y_m), "how many have a signal")
+    typical = let(mean(y_m), "mean signal", "mV")
+    middle = let(median(y_m), "median signal", "mV")
+    by_hand = let(total(y_m) / count(y_m), "mean by hand", "mV")
+    scatter = let(sqrt(total((y_m - typical) ** 2) / (count(y_m) - 1)), "scatter", "mV")
+"""
+
+
+def test_a_group_without_a_value_is_as_if_it_were_not_there(tmp_path: Path) -> None:
+    """Whatever is taken over groups: sums, counts and the equations of fits leave out the same."""
+    rows = [("S1", "1", "10.0"), ("S1", "1", "10.4"), ("S2", "2", ""), ("S3", "6", "20.0"), ("S4", "7", "25")]
+    lacking, without = (
+        Study(grouped.write(tmp_path / name, tuple(own), "std,x [1],y [mV]", OVER_GROUPS)).computed
+        for name, own in (("lacking", rows), ("without", [row for row in rows if row[0] != "S2"]))
+    )
+    scalars = [column.name for column in without.sheet.columns if column.axis is None]
+    assert {"b", "q", "count_of_y_m", "line_S"} <= {*scalars}
+    for name in scalars:
+        assert lacking.values.scalar(name) == without.values.scalar(name), name
+    assert without.values.scalar("many") == 3
+
+
 def test_whatever_is_left_out_others_keep_their_number(tmp_path: Path) -> None:
     rows = tuple((*row, "dropped" if row[0] == "A" else "") for row in grouped.FEW)
     folder = grouped.write(tmp_path, rows, "instrument,y [mm],left out")

@@ -20,7 +20,6 @@ from ..inputs.keys import fixed
 from ..messages.errors import listing
 from ..named import member, name_of, references, summed_over
 from ..quantity import Bounds, behind
-from ..sheet import Sheet
 from ..workbook import Claimed, Curve, FigureSpec, Measured, Parameter, TableSpec
 from .fitted import DeclaredFit, told_apart
 from .lines import (
@@ -43,6 +42,7 @@ from .lines import (
     with_unit,
 )
 from .places import Optionals, Standing
+from .same_rows import SameRows
 from .temperatures import is_difference
 
 _EXTREMES = {"max": (Max, Greatest), "min": (Min, Least)}
@@ -331,50 +331,11 @@ class MethodBody(dict[str, Any]):
 
     @property
     def whole(self) -> tuple[Column, ...]:
-        """All columns: the sums and counts that one result rests on leave out the same rows.
-
-        Those are rows in which what one of them, or what is computed from them, asks for has no value; what
-        rests on a sum cannot be asked. As a sum has one value, results that share it are of the same rows.
-        """
+        """All columns: what one result rests on leaves out the same rows."""
+        columns = tuple(self.columns.values())
         if self.ledger is not None:
-            return tuple(self.columns.values())
-        sheet = Sheet(tuple(self.columns.values()))
-        below = {c.name: {c.name, *(each.name for each in sheet.ancestors(c))} for c in sheet.columns}
-        over = {c.name: {*sheet.summed_axes(c), *sheet.algebra.counted(c)} for c in sheet.columns}
-        for axes in over.values():
-            axes |= {axis.of for axis in axes if isinstance(axis, MemberAxis)}
-        sums = {name for name, axes in over.items() if axes}
-        rows = [c for c in sheet.columns if c.axis and not sums & below[c.name]]
-
-        bound: list[set[str]] = []  # names of which those in one set rest on sums that they share
-        for column in sheet.columns:
-            if (names := self._together(sheet, column, sums)) & sums:
-                apart = [each for each in bound if not each & names & sums]
-                bound = [*apart, names.union(*(each for each in bound if each not in apart))]
-
-        def asked(total: Column) -> Iterator[Column]:
-            together = next(names for names in bound if total.name in names)
-            return (c for c in rows if c.axis in over[total.name] and c.name in together)
-
-        # What a fit may lack (its scatter, with as many rows as unknowns) is asked for where a line names it.
-        lines = (name for name in below if name not in self.of_fits)
-        named = set[str]().union(*(below[name] for name in lines))
-        columns = (replace(c, spare=False) if c.spare and c.name in named else c for c in sheet.columns)
-        whole = (replace(c, alongside=tuple(asked(c))) if c.name in sums else c for c in columns)
-        return told_apart(whole, self.fits)
-
-    def _together(self, sheet: Sheet, column: Column, sums: set[str]) -> set[str]:
-        """The names of a column and of what it rests on, up to where another result begins.
-
-        That is a fit, and for a fit, or a margin, all that is taken over rows: a blank that is subtracted
-        has its own rows, and whoever compares a result with a limit does not change it.
-        """
-        fits = [{each.name for each in fit.columns} for fit in self.fits]
-        own = next((names for names in fits if column.name in names), {column.name})
-        other = set[str]().union(*fits)
-        if own & (other | self.margins.keys()):
-            other |= sums
-        return {column.name, *(each.name for each in sheet.ancestors(column, without=other - own))}
+            return columns
+        return told_apart(SameRows(columns, self.fits, self.of_fits, self.margins).columns, self.fits)
 
     def column(self, name: str) -> Column:
         """What was declared under a name."""
