@@ -619,6 +619,27 @@ def test_a_root_at_an_end_is_none(tmp_path: Path, equation: str, low: str, code:
     assert says in cell.why
 
 
+@pytest.mark.parametrize(("unit", "size"), [("1/s", 1.0), ("1/min", 1 / 60), ("%", 0.01)])
+def test_a_number_beside_a_formula_has_the_unit_of_the_root(tmp_path: Path, unit: str, size: float) -> None:
+    """One end is a number in the unit that is declared, the other a formula, which is in SI."""
+    of = "1" if unit == "%" else "s"
+    (tmp_path / "workbook.py").write_text(
+        "from loopsheet import Method, given, root, unknown\nclass R(Method):\n    'A root.'\n"
+        f'    a = given("{of}", "scale")\n'
+        f'    x = unknown()\n    x = root((x * a) ** 2, 0.04, "x", "{unit}", low=2, high=1 / a)\n',
+        encoding="utf-8",
+    )
+    written = "2" if unit == "%" else "2 s"
+    toml = f'workbook = "workbook.py"\n[parameters]\na = "{written}"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    cell = Study(tmp_path).computed.values.cell("x")
+    if size == 1:  # 2/s is above 0.5/s
+        assert cell.value is None
+        assert "is not above" in cell.why
+    else:
+        assert cell.value == pytest.approx(0.1, rel=1e-15)
+
+
 def test_the_ends_of_a_root_have_its_unit(tmp_path: Path) -> None:
     """Dispersion of water waves; numbers are in the unit that the root is declared in."""
     (tmp_path / "workbook.py").write_text(

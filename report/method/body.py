@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, sympify
+from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, false, sympify, true
 
 from ...derivations.equation import Derivation, Equation, Kind, Ledger
 from ...derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
@@ -423,8 +423,8 @@ class MethodBody(dict[str, Any]):
         self.entries.append(equation)
         return self._as_difference(replace(column, rule=Formula(equation)), said_so=True)
 
-    def _end(self, name: str, said: PointsLine, end: Expr) -> Expr:
-        """An end of points; a number in their unit is a parameter with a default."""
+    def _end(self, name: str, said: PointsLine | ComputedLine, end: Expr) -> Expr:
+        """An end of points, or of a root; a number in their unit is a parameter with a default."""
         if not end.is_number:
             return exact(self._of_one_row(end))
         if not end and not size_of(name, said.unit).zero:
@@ -578,16 +578,30 @@ class MethodBody(dict[str, Any]):
                 )
             if self.announced.get(name) not in (None, UnknownLine("", "", {"latex": "", "positive": False})):
                 raise SheetError(f"{name} = unknown() is enough: root(...) says what {name} is", name)
-            size = size_of(name, said.unit)
-            places = {
-                each: in_si(place, size) for each, place in said.ends.items() if isinstance(place, Expr)
-            }
-            rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **places})
-            return self._as_difference(replace(column, rule=rule), said_so=True)
+            ends, requires = self._ends(name, said)
+            rule = Root(equation, equation, column.symbol, column.symbol, **{**said.ends, **ends})
+            return self._as_difference(replace(column, rule=rule, requires=requires), said_so=True)
         column = replace(column, rule=Formula(equation))
         if not said.unit:
             column = as_its_parts(self.columns, column)
         return self._as_difference(column, said_so=not column.display.startswith("like "))
+
+    def _ends(self, name: str, said: ComputedLine) -> tuple[dict[str, Expr], tuple[tuple[Any, str], ...]]:
+        """Between which a root lies and where it is begun, in SI, and that they are in order.
+
+        Ends that hang on the row may change places. A number beside a formula has the unit of the unknown.
+        """
+        size, told = size_of(name, said.unit), said.ends or {}
+        low, high, start = told["low"], told["high"], told["start"]
+        if (low.is_number and high.is_number) or not size.dimension:
+            low, high = in_si(low, size), in_si(high, size)
+        else:
+            low, high = self._end(f"{name}_low", said, low), self._end(f"{name}_high", said, high)
+        ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else in_si(start, size)}
+        upright = low < high
+        if upright in (true, false):
+            return ends, ()
+        return ends, ((upright, f"{high} is not above {low}, where {said.meaning} ends"),)
 
     def _as_difference(self, column: Column, said_so: bool) -> Column:
         """The column, shown in the unit of differences if it is one; refused if said to be in another."""

@@ -296,8 +296,8 @@ def root(
     meaning, unit, label, because, display, latex
         As for :func:`let`; the unit is that of the unknown.
     low, high : Expr
-        Between which it lies, themselves left out; a number is in the unit of the unknown, a formula that
-        names others in SI.
+        Between which it lies, themselves left out; a number is in the unit of the unknown, and beside a
+        formula, which is in SI, a parameter with a default: ``x_low``, ``x_high``.
     start : Expr, optional
         A first guess, alike; the middle, without. It costs steps, never truth.
     steps : int
@@ -309,21 +309,16 @@ def root(
     low, high = exact(low), exact(high)
     if low.is_number and high.is_number and low >= high:
         raise SheetError(f"the root is sought between {low} and {high}: low is not below high")
-    ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else sympify(start)}
     first, last = (f"{float(end):.15g}" if end.is_number else str(end) for end in (low, high))
     between = f"{first} and {last}" + behind(unit)
-    if (ends["start"] <= low) == true or (ends["start"] >= high) == true:
-        raise SheetError(f"the root is begun at {float(ends['start']):.15g}, which is not between {between}")
+    begun = None if start is None else sympify(start)
+    if begun is not None and ((begun <= low) == true or (begun >= high) == true):
+        raise SheetError(f"the root is begun at {float(begun):.15g}, which is not between {between}")
     none = f"no value between {between}, these ends left out, satisfies the equation"
-    # Ends that hang on the row may change places.
-    upright = low < high
-    requires = (
-        () if upright in (true, false) else ((upright, f"{high} is not above {low}, where {meaning} ends"),)
-    )
-    column = {"latex": latex, "positive": False, "requires": requires}
+    column = {"latex": latex, "positive": False}
     column |= {"display": display} if display else {}
     sides = exact(left), exact(right)
-    ends |= {"steps": steps, "none": none}
+    ends = {"low": low, "high": high, "start": begun, "steps": steps, "none": none}
     return named_next(ComputedLine(meaning, unit, column, sides, label, because, ends))
 
 
