@@ -112,6 +112,15 @@ def test_inputs_are_numbers_as_printed(book: Any) -> None:
     assert tests["D9"].fill.fgColor.rgb == "FFFFF8DC"
 
 
+def test_what_is_not_nothing_is_not_shown_as_0(report: Report, shown: Any) -> None:
+    """Of every column, in the number format of each of its cells."""
+    for name in report.values.value:
+        for cell in named(shown, f"ls_{name}"):
+            decimals = re.fullmatch(r"0\.?(0*)#*", cell.number_format)
+            if decimals and cell.value:
+                assert round(cell.value, len(decimals[1]) + cell.number_format.count("#")), cell.coordinate
+
+
 def test_every_computed_cell_is_a_formula(grid: Grid, book: Any) -> None:
     for block in grid.blocks:
         if block.kind in ("index", "given"):

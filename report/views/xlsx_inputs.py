@@ -13,7 +13,7 @@ from ..cells.grid import FIRST_ROW, SCALARS, CellBlock, Grid, Place, checked, le
 from ..cells.values import CODES, Status
 from ..quantity import Printed, behind
 from ..result.result import Report
-from .xlsx_style import Style, open_format, said
+from .xlsx_style import Style, number_format, open_format, said
 
 _MOST_NOTES = 500
 """Cells of a column that get a note of their own; a longer one has it in its header only."""
@@ -56,9 +56,13 @@ class GivenCells:
         printed, place = self.report.inputs.printed(block.name), block.place
         fixed = block.name in self.counts
         if not printed:
-            for row, number in enumerate(block.values):  # of an empty cell there is no uncertainty: a code
-                shown = None if isinstance(number, str) else number
-                sheet.write(place.row + row, place.column, shown, style("fixed", "0"))
+            # Of an empty cell there is no uncertainty: a code.
+            numbers = [None if isinstance(number, str) else number for number in block.values]
+            whole = all(number is None or number.is_integer() for number in numbers)
+            figures = [None] * len(numbers) if whole else self.report.figures(block.name)
+            for row, (number, figure) in enumerate(zip(numbers, figures, strict=True), start=place.row):
+                form = "0" if whole else number_format(figure)
+                sheet.write(row, place.column, number, style("fixed", form))
             return
         for row, each in enumerate(printed):
             at = (place.row + row, place.column)
