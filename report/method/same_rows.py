@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 
-from ..axis import GroupAxis, MemberAxis
+from ..axis import Axis, GroupAxis, MemberAxis
 from ..column import Column
 from ..sheet import Sheet
 from .fitted import DeclaredFit
@@ -46,31 +47,49 @@ class SameRows:
     @property
     def columns(self) -> Iterator[Column]:
         """All of them, with what their sums look at besides what they name."""
-        bound: list[set[str]] = []  # names of which those in one set rest on sums that they share
-        for column in self.sheet.columns:
-            if (names := self._together(column)) & self.sums:
-                apart = [each for each in bound if not each & names & self.sums]
-                bound = [*apart, names.union(*(each for each in bound if each not in apart))]
-        asked = list(filter(self._is_asked, self.sheet.columns))
         # What a fit may lack (its scatter, with as many rows as unknowns) is asked for where a line names it.
         lines = (name for name in self.below if name not in self.of_fits)
         named = set[str]().union(*(self.below[name] for name in lines))
         for column in self.sheet.columns:
             own = replace(column, spare=False) if column.spare and column.name in named else column
-            if column.name in self.sums:
-                together = next(names for names in bound if column.name in names)
-                near = together | self._groups_named(together)
-                over = self.over[column.name]
-                own = replace(own, alongside=tuple(c for c in asked if c.axis in over and c.name in near))
-            yield own
+            yield replace(own, alongside=tuple(self._alongside(column))) if column.name in self.sums else own
 
-    def _is_asked(self, column: Column) -> bool:
-        """Whether a sum can ask a column whether a row has a value."""
-        axis = column.axis
-        own = {axis.members, axis.members.of} if isinstance(axis, GroupAxis) else set()
-        return axis is not None and all(
-            self.over[name] <= own for name in self.sums & self.below[column.name]
-        )
+    def _alongside(self, total: Column) -> Iterator[Column]:
+        """What a column that sums over rows asks whether a row has a value."""
+        over = self.over[total.name]
+        asked = {axis: self._asked(total, axis) for axis in over}
+        return (each for each in self.sheet.columns if each.axis in over and each.name in asked[each.axis])
+
+    def _asked(self, total: Column, axis: Axis) -> set[str]:
+        """The names of columns on the rows of an axis that it asks."""
+        groups = axis if isinstance(axis, GroupAxis) else None
+        together = next(names for names in self._bound[groups] if total.name in names)
+        if groups is None:
+            return {name for name in together if not self.sums & self.below[name]}
+        # What these sums name on the groups, although their own rows are another result's.
+        sums = (self.sheet[name] for name in together if axis in self.over.get(name, ()))
+        near = {each.name for column in sums for each in self.sheet.precedents(column)}
+        own = {groups.members, groups.members.of}
+        below = {name: self.sums & self.below[name] for name in near}
+        return {name for name, those in below.items() if all(self.over[each] <= own for each in those)}
+
+    @cached_property
+    def _bound(self) -> dict[GroupAxis | None, list[set[str]]]:
+        """What rests on sums that it shares: on any, and on those over groups."""
+        found: dict[GroupAxis | None, list[set[str]]] = {None: self._sharing(self.sums)}
+        for axis in self.sheet.axes:
+            if isinstance(axis, GroupAxis):
+                found[axis] = self._sharing({name for name, over in self.over.items() if axis in over})
+        return found
+
+    def _sharing(self, sums: set[str]) -> list[set[str]]:
+        """Names of which those in one set rest on some of these sums that they share."""
+        bound: list[set[str]] = []
+        for column in self.sheet.columns:
+            if (names := self._together(column)) & sums:
+                apart = [each for each in bound if not each & names & sums]
+                bound = [*apart, names.union(*(each for each in bound if each not in apart))]
+        return bound
 
     def _together(self, column: Column) -> set[str]:
         """The names of a column and of what it rests on, up to where another result begins.
@@ -83,8 +102,3 @@ class SameRows:
         if own & (other | {*self.margins}):
             other |= self.sums
         return {column.name, *(each.name for each in self.sheet.ancestors(column, without=other - own))}
-
-    def _groups_named(self, names: Collection[str]) -> set[str]:
-        """The values of groups that some columns name, whose own rows are another result's."""
-        every = (each for name in names for each in self.sheet.precedents(self.sheet[name]))
-        return {each.name for each in every if isinstance(each.axis, GroupAxis)}

@@ -206,7 +206,7 @@ class _Written:
         else:  # larger in one cell than in another: there is no one sensitivity
             slope = self.slope(source) or f"=IF({self.issued},{contribution!r},NA())"
             self.number(row, 7, slope, contribution, number_format(rounded(contribution, 3)))
-        formula = f"=H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2"
+        formula = f"=IFERROR(H{row + 1}*(H{row + 1}{self.correlated(row)})/$B${self.last + 3}^2,0)"
         style.formula(sheet, row, 8, formula, each.share, style("number", "0.0%"))
 
     def slope(self, source: ErrorSource) -> str:
@@ -330,16 +330,19 @@ class _Written:
         cell, value = self.block.place.cell(self.row_of_cell), self.block.place.of(budget.value)
         u, expanded = budget.u / scale, budget.expanded / scale
         free = f"=IF({at['largest']}=0,{_UNLIMITED:.0f},{freedom})", min(budget.dof, _UNLIMITED)
+        # What has no value has no uncertainty, but the code that stands for it.
+        root, wide = f"SQRT(MAX(0,{first}+{at['second']}))", f"{at['k']}*{at['u']}"
+        sure, form = self.form(budget.u), self.form(budget.expanded)
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={cell}", value, shown),
-            ("standard uncertainty u", f"=SQRT(MAX(0,{first}+{at['second']}))", u, self.form(budget.u)),
+            ("standard uncertainty u", f"=IF(ISNUMBER({at['value']}),{root},{at['value']})", u, sure),
             ("variance of second order", self.second_order(first), second, of_second),
             ("largest contribution", f"=MAX(MAX({own}),-MIN({own}))", largest, of_largest),
             ("all others together", f"=SQRT(MAX(0,{lost})+ABS({at['second']}))", others, of_largest),
             ("effective degrees of freedom", *free, _DOF),
             ("coverage probability", "", budget.level, "0.##%"),
             ("coverage factor k", f"={self.factor(own, at, budget)}", budget.factor, "0.000"),
-            ("expanded uncertainty U", f"={at['k']}*{at['u']}", expanded, self.form(budget.expanded)),
+            ("expanded uncertainty U", f"=IF(ISNUMBER({at['u']}),{wide},{at['u']})", expanded, form),
         )
         for line, (name, formula, now, form) in enumerate(lines, start=row):
             self.style.text(self.sheet, line, 0, name, "name")
