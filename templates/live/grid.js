@@ -71,13 +71,16 @@ function endEditing() {
 
 function commit() {
   if (!editing) return;
-  const { element } = editing, all = normalised(element.value), plain = (text) => text.replace(/[µμ]/, "u");
-  // Its own unit may be typed behind it.
-  const { unit } = LIVE.columns[element.dataset.cell], bare = all.slice(0, -unit.length).trim();
-  const text = unit !== "1" && plain(all).endsWith(plain(unit)) && /[0-9.)]$/.test(bare) ? bare : all;
+  const { element } = editing, text = normalised(withoutUnit(element.value, element.dataset.cell));
   endEditing();
   element.value = text;
-  setCell(element.dataset.cell, element.dataset.index, text);
+  setCell(...cellOf(element), text);
+}
+
+// Its own unit may stand behind a number.
+function withoutUnit(text = "", name) {
+  const { unit } = LIVE.columns[name], all = text.trim(), bare = all.slice(0, -unit.length).trim(), plain = (one) => one.replace(/[µμ]/, "u");
+  return unit !== "1" && plain(all).endsWith(plain(unit)) && /[0-9.)]$/.test(bare) ? bare : text;
 }
 
 function cancel() {
@@ -93,7 +96,7 @@ const STEPS = { ArrowUp: 1, ArrowDown: -1 };
 function step(event, element) {
   handled(event);
   commit();
-  setCell(element.dataset.cell, element.dataset.index, stepped(element.value, STEPS[event.key]));
+  setCell(...cellOf(element), stepped(element.value, STEPS[event.key]));
   if (isText(document.activeElement)) document.activeElement.select();
 }
 
@@ -137,9 +140,9 @@ function onGridKey(event) {
     element.setSelectionRange(element.value.length, element.value.length);
   } else if (key === "Delete" && text && !editing) {
     handled(event);
-    beginEditing(element, false);
-    element.value = "";
-    commit();
+    const inputs = pickedCells().flat().flatMap((cell) => all("input[data-cell]", cell));
+    if (inputs.length > 1) change((state) => inputs.forEach((input) => put(state, ...cellOf(input), "")));
+    else setCell(...cellOf(element), "");
     enter(element);
   }
 }
@@ -156,7 +159,7 @@ function onKey(event) {
   if (gridOf(event.target)) onGridKey(event);
   else if ((key === "Enter" || key === " ") && event.target.matches?.("span[data-cell]")) {
     handled(event);
-    showCell(event.target.dataset.cell, event.target.dataset.index);
+    showCell(...cellOf(event.target));
   }
 }
 
@@ -217,7 +220,7 @@ function onPaste(event) {
 
 function pasteScalars(element, rows, read) {
   const names = all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell), first = names.indexOf(element.dataset.cell);
-  change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(rows[n][0]))));
+  change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(withoutUnit(rows[n][0], name)))));
 }
 
 // A block of texts by the names in its first line, without one from a cell on; by the numbers of rows where it has
@@ -236,7 +239,7 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
     if (!test) rowsLost += 1;
     for (const [n, text] of test ? fields.entries() : []) {
       const name = names[n], word = LIVE.tables[axis].texts[test.label]?.[name];
-      if (inputs.includes(name)) test.cells[name] = read(text);
+      if (inputs.includes(name)) test.cells[name] = read(withoutUnit(text, name));
       else if (word && text && read(word) !== read(text)) return `Nothing was pasted: ${name} of ${called} ${test.label} is ${word}, not ${text}.`;
       else if (!word && text && name !== "") lost.add(n);
     }

@@ -28,11 +28,13 @@ function moved(really) {
   show();
 }
 
+function put(state, name, index, text) {
+  if (index === "") state.parameters[name] = text;
+  else testAt(state, axisOf(name), index).cells[name] = text;
+}
+
 function setCell(name, index, text) {
-  change((state) => {
-    if (index === "") state.parameters[name] = text;
-    else testAt(state, axisOf(name), index).cells[name] = text;
-  });
+  change((state) => put(state, name, index, text));
   // At once, for the bar goes on to the next cell.
   const { trace } = page.look, row = trace.row(name, index);
   const why = trace.sheet.refused[name]?.[row] ?? (isUnknown(LIVE.columns[name], index, text) && `its u is not known: write ${text}(5) for 5 in the last digit`);

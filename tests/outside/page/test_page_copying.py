@@ -119,6 +119,26 @@ def test_shift_and_arrows_select_results_and_copy_them(page: Live) -> None:
     assert len(clipboard(page)[0].splitlines()) == 9
 
 
+def test_delete_empties_all_that_is_selected(page: Live) -> None:
+    typed = [page.input(name, row).input_value() for row in (2, 3) for name in ("v", "e", "x_p")]
+    page.input("v", 2).click()
+    page.press("Shift+ArrowRight", "Shift+ArrowDown", "Delete")
+    assert [page.input(name, row).input_value() for row in (2, 3) for name in ("v", "e")] == [""] * 4
+    assert page.input("x_p", 2).input_value() == typed[2]
+    page.press("Control+z")  # in one step
+    assert [page.input(name, row).input_value() for row in (2, 3) for name in ("v", "e", "x_p")] == typed
+
+
+def test_a_column_with_its_unit_behind_each_number_is_pasted(page: Live) -> None:
+    page.input("x_p", 2).click()
+    page.paste("29.8 um\n41,7 µm\n46.0\n")
+    assert [page.input("x_p", row).input_value() for row in (2, 3, 4)] == ["29.8", "41.7", "46.0"]
+    page.press("Control+z")
+    page.input("x_p", 2).click()
+    page.paste("0.0298 mm\n41.7 um\n")
+    assert page.cell("x_p", "2").status == "#INPUT!"
+
+
 def test_powers_and_signs_are_copied_as_programs_read_them(page: Live) -> None:
     page.page.locator("#cell-C-1-2").click()
     page.press("Shift+ArrowDown", "Control+c")
