@@ -10,34 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from sympy import (
-    Abs,
-    Add,
-    Basic,
-    Expr,
-    Float,
-    Indexed,
-    Integer,
-    Integral,
-    Max,
-    Min,
-    Mul,
-    Number,
-    NumberSymbol,
-    Piecewise,
-    Pow,
-    Rational,
-    Rel,
-    Sum,
-    Symbol,
-    cancel,
-    exp,
-    expand,
-    log,
-    nsimplify,
-    sign,
-    sstr,
-)
+import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import BooleanFunction
 
@@ -47,7 +20,7 @@ from .text import text
 from .unit_text import UnitError, coherent, parse_open
 from .vocabulary import Vocabulary
 
-Dimension = Mapping[str, Expr]
+Dimension = Mapping[str, sp.Expr]
 """Exponents of the base units; one that is zero is left out."""
 
 PURE: Dimension = {}
@@ -58,7 +31,7 @@ class DimensionError(ValueError):
     """An expression adds, compares or raises what cannot be, or a unit cannot be read."""
 
 
-def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) -> Dimension:
+def dimension_of_unit(unit: str, exponents: Mapping[str, sp.Expr] | None = None) -> Dimension:
     """Read a unit such as ``kg/m^3``, ``m/s^2`` or ``N/m^alpha``.
 
     Parameters
@@ -87,25 +60,25 @@ def dimension_of_unit(unit: str, exponents: Mapping[str, Expr] | None = None) ->
         raise DimensionError(f"{unit!r} cannot be read: {kind} {error.text!r}{hint}") from None
     if not found.is_si:
         raise DimensionError(f"{unit!r} is no unit of SI without prefix, such as {coherent(found)}")
-    total: Dimension = {base: Rational(power) for base, power in found.dimension}
+    total: Dimension = {base: sp.Rational(power) for base, power in found.dimension}
     for base, name, times in found.open:
         if name not in (exponents or {}):
             raise DimensionError(f"unknown exponent {name!r} in the unit {unit!r}")
-        total = product(total, power({base: Rational(times)}, (exponents or {})[name]))
+        total = product(total, power({base: sp.Rational(times)}, (exponents or {})[name]))
     return total
 
 
-def _tidy(exponent: Expr) -> Expr:
+def _tidy(exponent: sp.Expr) -> sp.Expr:
     exponent = exponent.doit()  # an author's 3/2 + 1 may stand there as it is printed
-    exponent = expand(nsimplify(exponent, rational=True) if exponent.has(Float) else exponent)
-    return exponent if exponent.is_polynomial() else cancel(exponent)
+    exponent = sp.expand(sp.nsimplify(exponent, rational=True) if exponent.has(sp.Float) else exponent)
+    return exponent if exponent.is_polynomial() else sp.cancel(exponent)
 
 
 def product(a: Dimension, b: Dimension) -> Dimension:
     """The dimension of a product."""
     total = dict(a)
     for unit, exponent in b.items():
-        summed = _tidy(total.get(unit, Integer(0)) + exponent)
+        summed = _tidy(total.get(unit, sp.Integer(0)) + exponent)
         if summed == 0:
             total.pop(unit, None)
         else:
@@ -113,7 +86,7 @@ def product(a: Dimension, b: Dimension) -> Dimension:
     return total
 
 
-def power(a: Dimension, exponent: Expr) -> Dimension:
+def power(a: Dimension, exponent: sp.Expr) -> Dimension:
     """The dimension of a power."""
     return {unit: raised for unit, old in a.items() if (raised := _tidy(old * exponent)) != 0}
 
@@ -121,8 +94,8 @@ def power(a: Dimension, exponent: Expr) -> Dimension:
 def text_of(dimension: Dimension) -> str:
     """Write a dimension for people, ``kg m^2 s^-2``."""
 
-    def written(exponent: Expr) -> str:
-        raised = sstr(exponent)
+    def written(exponent: sp.Expr) -> str:
+        raised = sp.sstr(exponent)
         return "" if raised == "1" else f"^{raised}" if re.fullmatch(r"-?\w+", raised) else f"^({raised})"
 
     return " ".join(unit + written(exponent) for unit, exponent in sorted(dimension.items())) or "1"
@@ -137,7 +110,7 @@ class Dimensions:
     def __init__(self, vocabulary: Vocabulary) -> None:
         self.vocabulary = vocabulary
 
-    def of_cell(self, cell: Expr) -> Dimension:
+    def of_cell(self, cell: sp.Expr) -> Dimension:
         """The dimension of a symbol; what is not of the vocabulary is a pure number."""
         quantity = self.vocabulary.find(cell)
         if quantity is None:
@@ -145,51 +118,51 @@ class Dimensions:
         names = re.findall(r"\^([A-Za-z_]\w*)", quantity.unit)
         others = {name: self.vocabulary[name] for name in names if name in self.vocabulary}
         # N/m^alpha of row k has the alpha of row k in its exponent.
-        if isinstance(cell, Indexed):
+        if isinstance(cell, sp.Indexed):
             return dimension_of_unit(quantity.unit, {name: q[cell.indices[0]] for name, q in others.items()})
         return dimension_of_unit(quantity.unit, {name: q.symbol for name, q in others.items()})
 
-    def fail(self, expression: Basic, problem: str) -> Exception:
+    def fail(self, expression: sp.Basic, problem: str) -> Exception:
         """The complaint about an expression."""
-        return DimensionError(f"{problem} in {sstr(expression)}")
+        return DimensionError(f"{problem} in {sp.sstr(expression)}")
 
     def of(self, expression: Any) -> Dimension:
         """The dimension of an expression, checked from the inside out."""
         match expression:
-            case Number() | NumberSymbol():
+            case sp.Number() | sp.NumberSymbol():
                 return PURE
-            case Indexed() | Symbol():
+            case sp.Indexed() | sp.Symbol():
                 return self.of_cell(expression)
             case AppliedUndef():
-                return self.of_cell(Symbol(expression.func.__name__))
-            case Add():
+                return self.of_cell(sp.Symbol(expression.func.__name__))
+            case sp.Add():
                 return self.same(list(expression.args), expression, "add")
-            case Max() | Min():
+            case sp.Max() | sp.Min():
                 return self.same(list(expression.args), expression, "compare")
-            case Mul():
+            case sp.Mul():
                 total = PURE
                 for factor in expression.args:
                     total = product(total, self.of(factor))
                 return total
-            case exp() | log():
+            case sp.exp() | sp.log():
                 return self.pure(expression.args[0], expression, "the argument of a function")
-            case Pow():
+            case sp.Pow():
                 self.pure(expression.exp, expression, "an exponent")
                 return power(self.of(expression.base), expression.exp)
-            case Abs():
+            case sp.Abs():
                 return self.of(expression.args[0])
-            case sign():
+            case sp.sign():
                 self.of(expression.args[0])
                 return PURE
-            case Sum() | OrderStatistic():
+            case sp.Sum() | OrderStatistic():
                 return self.of(taken_of(expression))
-            case Integral():
+            case sp.Integral():
                 total = self.of(expression.function)
                 for variable, *ends in expression.limits:
                     self.same([variable, *ends], expression, "compare")
                     total = product(total, self.of(variable))
                 return total
-            case Piecewise():
+            case sp.Piecewise():
                 for _, condition in expression.args:
                     self.relation(condition)
                 return self.same([body for body, _ in expression.args], expression, "choose between")
@@ -198,7 +171,7 @@ class Dimensions:
                     self.pure(argument, expression, "the argument of a function")
                 return PURE
 
-    def same(self, parts: list[Any], expression: Basic, verb: str) -> Dimension:
+    def same(self, parts: list[Any], expression: sp.Basic, verb: str) -> Dimension:
         """All parts must agree; a zero agrees with everything."""
         found: Dimension | None = None
         for part in parts:
@@ -211,7 +184,7 @@ class Dimensions:
                 raise self.fail(expression, f"cannot {verb} {text_of(found)} and {text_of(dimension)}")
         return found or PURE
 
-    def pure(self, part: Any, expression: Basic, what: str) -> Dimension:
+    def pure(self, part: Any, expression: sp.Basic, what: str) -> Dimension:
         """What may only be a pure number."""
         dimension = self.of(part)
         if dimension:
@@ -220,7 +193,7 @@ class Dimensions:
 
     def relation(self, condition: Any) -> None:
         """Both sides of every comparison must agree."""
-        if isinstance(condition, Rel):
+        if isinstance(condition, sp.Rel):
             self.same([condition.lhs, condition.rhs], condition, "compare")
         elif isinstance(condition, BooleanFunction):
             for part in condition.args:
@@ -237,12 +210,12 @@ class _Unsaid(Exception):
 class _OfLedger(Dimensions):
     """Complains in the words of the ledger; of a symbol that it says nothing of, nothing is known."""
 
-    def of_cell(self, cell: Expr) -> Dimension:
+    def of_cell(self, cell: sp.Expr) -> Dimension:
         if self.vocabulary.find(cell) is None and not cell.is_integer:
             raise _Unsaid
         return super().of_cell(cell)
 
-    def fail(self, expression: Basic, problem: str) -> Exception:
+    def fail(self, expression: sp.Basic, problem: str) -> Exception:
         return DimensionError(f"{problem} in {text(expression, self.vocabulary)}")
 
 
@@ -254,11 +227,11 @@ def mixed(equation: Equation, vocabulary: Vocabulary) -> str:
     """
     dimensions = _OfLedger(vocabulary)
     try:
-        found: dict[str, Expr] = {}
+        found: dict[str, sp.Expr] = {}
         for member in equation.members:
-            if isinstance(member, Expr) and member != 0:
+            if isinstance(member, sp.Expr) and member != 0:
                 found.setdefault(text_of(dimensions.of(member)), member)
-            elif not isinstance(member, Expr):
+            elif not isinstance(member, sp.Expr):
                 dimensions.relation(member)
         for condition in equation.conditions:
             dimensions.relation(condition)

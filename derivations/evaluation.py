@@ -13,30 +13,7 @@ from statistics import median
 from typing import Any
 
 import mpmath
-import sympy
-from sympy import (
-    Add,
-    And,
-    Basic,
-    Eq,
-    Float,
-    Ge,
-    Gt,
-    Indexed,
-    Integral,
-    Le,
-    Lt,
-    Mul,
-    Ne,
-    Not,
-    NumberSymbol,
-    Or,
-    Piecewise,
-    Pow,
-    Rational,
-    Sum,
-    Symbol,
-)
+import sympy as sp
 from sympy.logic.boolalg import BooleanAtom
 
 from .reductions import REDUCTIONS, Greatest, Least, Median
@@ -52,27 +29,27 @@ _SAME_NAME = (
 """Functions that sympy and mpmath call by one name and define alike."""
 
 _FUNCTIONS: dict[Any, Callable[..., Any]] = {
-    **{getattr(sympy, name): getattr(mpmath, name) for name in _SAME_NAME.split()},
-    sympy.betainc: mpmath.betainc,
-    sympy.ceiling: mpmath.ceil,
-    sympy.LambertW: mpmath.lambertw,
-    sympy.elliptic_k: mpmath.ellipk,
-    sympy.elliptic_e: mpmath.ellipe,
-    sympy.Abs: abs,
-    sympy.Max: max,
-    sympy.Min: min,
-    Lt: operator.lt,
-    Le: operator.le,
-    Gt: operator.gt,
-    Ge: operator.ge,
-    Eq: operator.eq,
-    Ne: operator.ne,
-    And: lambda *parts: all(parts),
-    Or: lambda *parts: any(parts),
-    Not: operator.not_,
+    **{getattr(sp, name): getattr(mpmath, name) for name in _SAME_NAME.split()},
+    sp.betainc: mpmath.betainc,
+    sp.ceiling: mpmath.ceil,
+    sp.LambertW: mpmath.lambertw,
+    sp.elliptic_k: mpmath.ellipk,
+    sp.elliptic_e: mpmath.ellipe,
+    sp.Abs: abs,
+    sp.Max: max,
+    sp.Min: min,
+    sp.Lt: operator.lt,
+    sp.Le: operator.le,
+    sp.Gt: operator.gt,
+    sp.Ge: operator.ge,
+    sp.Eq: operator.eq,
+    sp.Ne: operator.ne,
+    sp.And: lambda *parts: all(parts),
+    sp.Or: lambda *parts: any(parts),
+    sp.Not: operator.not_,
 }
 _TAKEN: dict[Any, Callable[[Iterator[Any]], Any]] = {
-    Sum: partial(sum, start=mpmath.mpf(0)),
+    sp.Sum: partial(sum, start=mpmath.mpf(0)),
     Median: median,
     Greatest: max,
     Least: min,
@@ -202,16 +179,16 @@ class Tape:
         for known in self._known:
             if expression in known:
                 return known[expression]
-        if isinstance(expression, (Float, complex, float)):
+        if isinstance(expression, (sp.Float, complex, float)):
             raise NotEvaluable(f"{expression} is a rounded number")
-        if isinstance(expression, Rational):
+        if isinstance(expression, sp.Rational):
             value: Any = mpmath.mpf(expression.p) / mpmath.mpf(expression.q)
             return self._fresh(expression, 0, value)
-        if isinstance(expression, NumberSymbol):
+        if isinstance(expression, sp.NumberSymbol):
             return self._fresh(expression, 0, expression._to_mpmath(mpmath.mp.prec))
         if isinstance(expression, BooleanAtom):
             return self._fresh(expression, 0, bool(expression))
-        if isinstance(expression, (Integral, *REDUCTIONS)):
+        if isinstance(expression, (sp.Integral, *REDUCTIONS)):
             return self._loop(expression)
         function, arguments = self._operation(expression)
         slots = tuple(self._slot(argument) for argument in arguments)
@@ -224,26 +201,28 @@ class Tape:
     def _operation(expression: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Which function of which arguments an expression is."""
         match expression:
-            case Add():
+            case sp.Add():
                 return _folded(operator.add, len(expression.args)), expression.args
-            case Mul():
+            case sp.Mul():
                 return _folded(operator.mul, len(expression.args)), expression.args
-            case Pow():
+            case sp.Pow():
                 base, exponent = expression.args
                 if exponent.is_Integer:
                     return _whole_power(int(exponent)), (base,)
-                if exponent == Rational(1, 2):
+                if exponent == sp.Rational(1, 2):
                     return mpmath.sqrt, (base,)
                 return _power, (base, exponent)
-            case Indexed() if len(expression.indices) == 1:
+            case sp.Indexed() if len(expression.indices) == 1:
                 return _row, (expression.base.label, expression.indices[0])
-            case Piecewise():
+            case sp.Piecewise():
                 return _choose, tuple(part for branch in expression.args for part in branch.args)
         for kind, function in _FUNCTIONS.items():
             if isinstance(expression, kind):
                 return function, expression.args
         name = (
-            expression if isinstance(expression, Basic) and expression.is_Atom else type(expression).__name__
+            expression
+            if isinstance(expression, sp.Basic) and expression.is_Atom
+            else type(expression).__name__
         )
         raise NotEvaluable(f"{name} has no value")
 
@@ -255,7 +234,7 @@ class Tape:
         variable, low, high = limits
         function = expression.func(expression.function, *inner) if inner else expression.function
         if any(variable in known for known in self._known):  # what runs inside hides what runs outside
-            hidden, variable = variable, Symbol(f"{variable}'", **variable.assumptions0)
+            hidden, variable = variable, sp.Symbol(f"{variable}'", **variable.assumptions0)
             function = function.xreplace({hidden: variable})
         ends = (self._slot(low), self._slot(high))
         level = len(self._tapes)
@@ -266,7 +245,7 @@ class Tape:
         tape = self._tapes.pop()
         self._known.pop()
         kind = type(expression)
-        at = self._integral if kind is Integral else partial(self._taken, _TAKEN[kind])
+        at = self._integral if kind is sp.Integral else partial(self._taken, _TAKEN[kind])
         named = {body, *(each for _, _, used in tape for each in used)}
         named |= {each for inner, _, _ in tape for each in self._beneath.get(inner, ())}
         beneath = sorted(each for each in named if self._levels[each] < level)
@@ -275,7 +254,7 @@ class Tape:
         slot = self._fresh(expression, outer)
         self._beneath[slot] = beneath
         run: Callable[..., Any] = partial(at, tape, running, body)
-        if kind is Integral:
+        if kind is sp.Integral:
             run = self._remembering(run, beneath)
         # A body that does not run with the variable is no part of the tape: it must be there before.
         arguments = (*ends, *((body,) if self._levels[body] < level else ()))

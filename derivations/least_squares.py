@@ -14,36 +14,21 @@ from itertools import chain, combinations, product
 from string import ascii_lowercase as LETTERS
 from typing import Any
 
-from sympy import (
-    Add,
-    Expr,
-    Indexed,
-    IndexedBase,
-    Integer,
-    Piecewise,
-    Rational,
-    Rel,
-    StrictGreaterThan,
-    Sum,
-    Symbol,
-    diff,
-    sqrt,
-    true,
-)
+import sympy as sp
 
 from .equation import Derivation, Equation, Kind, Step
 from .normal_equation import normal_equation
 
-_APART = Integer(2**45)
+_APART = sp.Integer(2**45)
 """What is left of a slope, as a part of it, is more than rounding from one over this on. (Its square has more
 digits than a spreadsheet reads.)"""
 
 
-_PARTS = tuple(map(Rational, ("1", "2/5", "1/10", "1/50", "1/250")))
+_PARTS = tuple(map(sp.Rational, ("1", "2/5", "1/10", "1/50", "1/250")))
 """Of a step that is too long: with fewer of them some sets of NIST's need more passes than a workbook has."""
-_ROUNDING = Rational(1, 2**40)
+_ROUNDING = sp.Rational(1, 2**40)
 """By what part of itself a sum of squares may grow by rounding."""
-_NOTHING = Rational(1, 10**24)
+_NOTHING = sp.Rational(1, 10**24)
 """What a sum of squares may be by rounding alone, as a part of that of what was observed."""
 
 
@@ -68,11 +53,11 @@ class FitQuantity:
     name: str
     title: str
     latex: str
-    cell: Expr
+    cell: sp.Expr
     entry: Equation | Derivation
-    needs: tuple[tuple[Rel, str], ...] = ()
-    step: Expr | None = None
-    start: Expr | None = None
+    needs: tuple[tuple[sp.Rel, str], ...] = ()
+    step: sp.Expr | None = None
+    start: sp.Expr | None = None
 
     @property
     def equation(self) -> Equation:
@@ -80,8 +65,8 @@ class FitQuantity:
         return self.entry.claim if isinstance(self.entry, Derivation) else self.entry
 
 
-Needs = tuple[tuple[Rel, str], ...]
-Pair = tuple[Equation, Expr]
+Needs = tuple[tuple[sp.Rel, str], ...]
+Pair = tuple[Equation, sp.Expr]
 """A premise, and what it is solved for."""
 
 
@@ -132,14 +117,14 @@ class LeastSquares:
     def __init__(
         self,
         called: str,
-        observed: Expr,
-        model: Expr,
+        observed: sp.Expr,
+        model: sp.Expr,
         what: str,
-        parameters: Mapping[Symbol, str],
-        u: Expr | None,
-        others: Mapping[Indexed, Expr],
-        index: Symbol,
-        size: Symbol,
+        parameters: Mapping[sp.Symbol, str],
+        u: sp.Expr | None,
+        others: Mapping[sp.Indexed, sp.Expr],
+        index: sp.Symbol,
+        size: sp.Symbol,
         number: str,
         own: Iterator[str],
         rows: str = "",
@@ -150,12 +135,12 @@ class LeastSquares:
         self.count = len(self.parameters)
         feet = {each: self._cell(f"{called}_at_{each.base}", rows=True) for each in others}
         self.feet, self.others, self.true = feet, others, model.xreplace(feet)
-        self.u: Expr = Integer(1) if u is None else u
-        self.tilts = {each: diff(self.true, foot) for each, foot in feet.items()}
-        self.slopes = tuple(diff(self.true, each) for each in self.parameters)
+        self.u: sp.Expr = sp.Integer(1) if u is None else u
+        self.tilts = {each: sp.diff(self.true, foot) for each, foot in feet.items()}
+        self.slopes = tuple(sp.diff(self.true, each) for each in self.parameters)
         self.flat = not any(slope.has(*self.parameters) for slope in self.slopes)
         self.linear = self.flat and not others
-        self.enough: tuple[Rel, ...] = (size > self.count,)
+        self.enough: tuple[sp.Rel, ...] = (size > self.count,)
         self.pairs = tuple(combinations(range(self.count), 2))
         names = map(str, self.parameters)
         self.names = {
@@ -172,16 +157,16 @@ class LeastSquares:
         self.helpers: list[FitQuantity] = []
         self._found: dict[str, FitQuantity] = {}
         self.claims: list[Derivation] = []
-        self.weight: Expr = Integer(1)
+        self.weight: sp.Expr = sp.Integer(1)
         bent = any(tilt.has(*feet.values()) for tilt in self.tilts.values())
         beyond = (tilt * (each - feet[each]) for each, tilt in self.tilts.items())
-        self.tangent = self.true + Add(*beyond) if bent else model
+        self.tangent = self.true + sp.Add(*beyond) if bent else model
         if u is not None:
-            spread = u**2 + Add(*((tilt * others[each]) ** 2 for each, tilt in self.tilts.items()))
-            above = StrictGreaterThan(spread if feet else u, 0)
+            spread = u**2 + sp.Add(*((tilt * others[each]) ** 2 for each, tilt in self.tilts.items()))
+            above = sp.StrictGreaterThan(spread if feet else u, 0)
             needs = (
                 ()
-                if above == true
+                if above == sp.true
                 else ((above, "a standard uncertainty that rows are weighed by is above zero"),)
             )
             self.weighing = 1 / spread
@@ -210,20 +195,20 @@ class LeastSquares:
 
     # --- words
 
-    def total(self, terms: Expr) -> Expr:
+    def total(self, terms: sp.Expr) -> sp.Expr:
         """The sum over the rows, by weight."""
-        return Sum(self.weight * terms, (self.index, 1, self.size))
+        return sp.Sum(self.weight * terms, (self.index, 1, self.size))
 
     def _together(self, j: int, m: int) -> str:
         return f"r_{self.parameters[j]}_{self.parameters[m]}"
 
-    def _cell(self, name: str, rows: bool = False, positive: bool = False) -> Expr:
-        symbol = Symbol(name, positive=True) if positive else Symbol(name, real=True)
-        return IndexedBase(symbol)[self.index] if rows else symbol
+    def _cell(self, name: str, rows: bool = False, positive: bool = False) -> sp.Expr:
+        symbol = sp.Symbol(name, positive=True) if positive else sp.Symbol(name, real=True)
+        return sp.IndexedBase(symbol)[self.index] if rows else symbol
 
     def _result(
-        self, name: str, value: Expr, title: str, latex: str = "", *, rows: bool = False, needs: Needs = ()
-    ) -> Expr:
+        self, name: str, value: sp.Expr, title: str, latex: str = "", *, rows: bool = False, needs: Needs = ()
+    ) -> sp.Expr:
         """A result by its definition."""
         cell = self._cell(self.names[name], rows)
         equation = self._said(
@@ -235,14 +220,14 @@ class LeastSquares:
     def _helper(
         self,
         name: str,
-        value: Expr,
+        value: sp.Expr,
         title: str,
         latex: str,
         *,
         rows: bool = False,
         positive: bool = False,
         needs: Needs = (),
-    ) -> Expr:
+    ) -> sp.Expr:
         """What only leads there, by its definition."""
         cell = self._cell(f"{self.called}_{name}", rows, positive)
         equation = self._said(next(self.own), (cell, value), title, Kind.DEFINITION, defines=cell)
@@ -252,7 +237,7 @@ class LeastSquares:
     def _said(
         self,
         number: str,
-        members: tuple[Expr, ...],
+        members: tuple[sp.Expr, ...],
         title: str,
         kind: Kind = Kind.CLAIM,
         because: str = "",
@@ -261,18 +246,18 @@ class LeastSquares:
         because = f"{because or 'definition'}{self.rows and ', '}{self.rows}"
         return Equation(number, members, because, kind, title, conditions=self.enough, **more)
 
-    def _definitions(self, *cells: Expr) -> Iterator[Pair]:
+    def _definitions(self, *cells: sp.Expr) -> Iterator[Pair]:
         """Those of some quantities, and what they are solved for; of data there are none."""
         known = {part.cell: part.equation for part in (*self.helpers, *self._found.values())}
         for cell in dict.fromkeys(cells):
             if cell in known:
-                yield known[cell], cell.base if isinstance(cell, Indexed) else cell
+                yield known[cell], cell.base if isinstance(cell, sp.Indexed) else cell
 
     # --- columns
 
-    def _column(self, name: str, value: Expr, title: str, latex: str) -> Expr:
+    def _column(self, name: str, value: sp.Expr, title: str, latex: str) -> sp.Expr:
         """What a row has: itself, if it is a number or a cell."""
-        alone = value.is_Atom or isinstance(value, Indexed)
+        alone = value.is_Atom or isinstance(value, sp.Indexed)
         return value if alone else self._helper(name, value, title, latex, rows=True)
 
     def _orthogonal(self) -> None:
@@ -284,13 +269,13 @@ class LeastSquares:
         ]
         left, self.unknowns = self.residual, self.parameters
         if self.linear:
-            offset = self.model.xreplace(dict.fromkeys(self.parameters, Integer(0)))
+            offset = self.model.xreplace(dict.fromkeys(self.parameters, sp.Integer(0)))
             left = self._column("z", self.observed - offset, "observed less what no parameter moves", "z%s")
         else:
             self.unknowns = tuple(self._cell(f"{self.called}_step{n + 1}") for n in range(self.count))
         self.columns, self.left = [own], [left]
         """Slopes, and what was observed: as they are, then without the first slope, without two, ..."""
-        self.norms, self.along, self.shares = list[Expr](), list[Expr](), list[dict[int, Expr]]()
+        self.norms, self.along, self.shares = list[sp.Expr](), list[sp.Expr](), list[dict[int, sp.Expr]]()
         for m, name in enumerate(names):
             q, n, primes = own[m], m + 1, "'" * (m + 1)
             now = f"without what {' and '.join(names[:n])} moves"
@@ -299,7 +284,7 @@ class LeastSquares:
                 f"N{n}", self.total(q**2), title, f"N_{{{n}}}", positive=True, needs=(self._apart(m),)
             )
             along = self._helper(f"d{n}", self.total(q * left) / norm, f"{name} by itself", f"d_{{{n}}}")
-            shares = dict[int, Expr]()
+            shares = dict[int, sp.Expr]()
             for j in range(n, self.count):
                 value, title = self.total(q * own[j]) / norm, f"what {names[j]} moves, as {name} does"
                 shares[j] = self._helper(f"r{n}_{j + 1}", value, title, f"r_{{{n}{j + 1}}}")
@@ -316,7 +301,7 @@ class LeastSquares:
             self.columns.append(own)
             self.left.append(left)
 
-    def _apart(self, m: int) -> tuple[Rel, str]:
+    def _apart(self, m: int) -> tuple[sp.Rel, str]:
         """That rows tell a parameter from those before it."""
         if m == 0:
             return self.size >= self.count, f"{self.count} parameters take {self.count} rows or more"
@@ -340,21 +325,21 @@ class LeastSquares:
         for m in range(self.count):
             self._seek(m, self.part)
 
-    def _part(self) -> Expr:
+    def _part(self) -> sp.Expr:
         """How much of a step is taken: all of it where the sum of squares does not grow, else less."""
 
-        def squares(part: Rational) -> Expr:
+        def squares(part: sp.Rational) -> sp.Expr:
             pairs = zip(self.parameters, self.unknowns, strict=True)
             moved = {each: each + part * step for each, step in pairs}
             left = (self.observed - self.tangent.xreplace(moved)) ** 2
             if not self.feet:
                 return self.total(left)
-            return Sum(self.weighing.xreplace(moved) * left, (self.index, 1, self.size))
+            return sp.Sum(self.weighing.xreplace(moved) * left, (self.index, 1, self.size))
 
         # A model that goes through all rows leaves rounding only, which any step makes more or less.
         now = (1 + _ROUNDING) * self.total(self.residual**2) + _NOTHING * self.total(self.observed**2)
         ways = [(part, squares(part) <= now) for part in _PARTS[:-1]]
-        value = Piecewise(*ways, (_PARTS[-1], True))
+        value = sp.Piecewise(*ways, (_PARTS[-1], True))
         return self._helper("part", value, "part of the step that is taken", r"\lambda")
 
     def _solved(self, m: int) -> FitQuantity:
@@ -364,7 +349,7 @@ class LeastSquares:
             self.shares[m],
             "" if self.linear else " along the tangent",
         )
-        value = self.along[m] - Add(*(share * self.unknowns[j] for j, share in shares.items()))
+        value = self.along[m] - sp.Add(*(share * self.unknowns[j] for j, share in shares.items()))
         title = self.words[m] if self.linear else f"step of {self.parameters[m]}"
         number, part = (self.number, self._parts[str(unknown)]) if self.linear else (next(self.own), "")
         because = f"the sum of squares is least{tangent}"
@@ -375,20 +360,20 @@ class LeastSquares:
         return FitQuantity(str(unknown), title, latex, unknown, Derivation((*self._reduced(m), last)))
 
     @property
-    def _squares(self) -> Expr:
+    def _squares(self) -> sp.Expr:
         if not self.feet:
             return self.total((self.observed - self.model) ** 2)
         off = ((each - foot) ** 2 / self.others[each] ** 2 for each, foot in self.feet.items())
-        squares = (self.observed - self.true) ** 2 / self.u**2 + Add(*off)
-        return Sum(squares, (self.index, 1, self.size))
+        squares = (self.observed - self.true) ** 2 / self.u**2 + sp.Add(*off)
+        return sp.Sum(squares, (self.index, 1, self.size))
 
     def _normal(self, m: int, j: int) -> Equation:
         """The normal equation of an unknown, when the first m are out."""
         own, out = self.columns[m], ", ".join(map(str, self.unknowns[:m]))
-        rest = self.left[m] - Add(*(self.unknowns[i] * own[i] for i in range(m, self.count)))
+        rest = self.left[m] - sp.Add(*(self.unknowns[i] * own[i] for i in range(m, self.count)))
         title = f"normal equation of {self.unknowns[j]}{' without ' if out else ''}{out}"
         if self.linear or m:
-            return self._said("", (self.total(own[j] * rest), Integer(0)), title)
+            return self._said("", (self.total(own[j] * rest), sp.Integer(0)), title)
         # Half of the derivative, along the tangent.
         return replace(normal_equation(self.total(own[j] * rest), str(self.unknowns[j])), title=title)
 
@@ -397,7 +382,7 @@ class LeastSquares:
         if m == 0:
             own, found = [*self._definitions(*self.columns[0], self.left[0])], list[Step]()
             for j, (parameter, word) in enumerate(zip(self.parameters, self.words, strict=True)):
-                normal = normal_equation(diff(self._squares, parameter), word)
+                normal = normal_equation(sp.diff(self._squares, parameter), word)
                 pairs = (*own, (normal, parameter))
                 found += [_step(self._normal(0, j), pairs, "Write it by the slopes of the model.")]
             return tuple(found) if self.linear else ()
@@ -416,7 +401,7 @@ class LeastSquares:
             ),
         )
 
-    def _seek(self, m: int, part_of_step: Expr) -> None:
+    def _seek(self, m: int, part_of_step: sp.Expr) -> None:
         """A parameter that steps lead to: it stays where the sum of squares has no slope."""
         parameter, word, slope = self.parameters[m], self.words[m], self._cell(f"{self.called}_G{m + 1}")
         because = "half the slope of the sum of squares, downwards; where that is least, it is zero"
@@ -425,7 +410,9 @@ class LeastSquares:
         step = parameter + part_of_step * self.unknowns[m]
         self._found[str(parameter)] = FitQuantity(str(parameter), word, "", parameter, said, step=step)
         title, shown = f"slope of the sum of squares by {parameter}", "the derivative of the sum of squares"
-        claim = self._said(next(self.own), (diff(self._squares, parameter), -2 * slope), title, because=shown)
+        claim = self._said(
+            next(self.own), (sp.diff(self._squares, parameter), -2 * slope), title, because=shown
+        )
         rows = (self.columns[0][m], self.residual, self.fitted, *(self.weight,) * bool(self.feet))
         own = (*self._definitions(*rows), *self._nearest)
         step_of = _step(claim, ((said, slope), *own), "Differentiate the sum of squares.")
@@ -442,7 +429,7 @@ class LeastSquares:
 
     def _approach(self) -> None:
         """The true values of a row, as far as the parameters are known: along the tangent there."""
-        moved = Add(*(s * step for s, step in zip(self.columns[0], self.unknowns, strict=True)))
+        moved = sp.Add(*(s * step for s, step in zip(self.columns[0], self.unknowns, strict=True)))
         for each, foot in self.feet.items():
             name, along = f"at_{each.base}", self.others[each] ** 2 * self.tilts[each] * self.weight
             members, title = (foot, each + along * self.residual), f"{each.base} of the nearest point"
@@ -460,27 +447,29 @@ class LeastSquares:
         squares = self.total(self.residual**2)
         several = self.size > self.count, f"{self.count} parameters leave nothing over of as many rows"
         s = self._result(
-            "s", sqrt(squares / (self.size - self.count)), "scatter about the fit", "s", needs=(several,)
+            "s", sp.sqrt(squares / (self.size - self.count)), "scatter about the fit", "s", needs=(several,)
         )
         self._result("S", squares, "sum of squares", "S")
         inverse = self._inverse()
 
-        def product_of(j: int, i: int) -> Expr:
-            return Add(*(inverse[j, m] * inverse[i, m] / self.norms[m] for m in range(max(j, i), self.count)))
+        def product_of(j: int, i: int) -> sp.Expr:
+            return sp.Add(
+                *(inverse[j, m] * inverse[i, m] / self.norms[m] for m in range(max(j, i), self.count))
+            )
 
         for j, (name, word) in enumerate(zip(self.parameters, self.words, strict=True)):
             title = f"standard uncertainty of the {word} by scatter"
-            self._result(f"s_{name}", s * sqrt(product_of(j, j)), title)
+            self._result(f"s_{name}", s * sp.sqrt(product_of(j, j)), title)
         for i, j in self.pairs:
             title = f"correlation of {self.words[i]} and {self.words[j]} by scatter"
-            value = product_of(i, j) / sqrt(product_of(i, i) * product_of(j, j))
+            value = product_of(i, j) / sp.sqrt(product_of(i, i) * product_of(j, j))
             self._result(self._together(i, j), value, title)
 
-    def _inverse(self) -> dict[tuple[int, int], Expr]:
+    def _inverse(self) -> dict[tuple[int, int], sp.Expr]:
         """What each parameter by itself does to those before it: the inverse of the triangle of shares."""
-        found: dict[tuple[int, int], Expr] = {(j, j): Integer(1) for j in range(self.count)}
+        found: dict[tuple[int, int], sp.Expr] = {(j, j): sp.Integer(1) for j in range(self.count)}
         for j, m in sorted(self.pairs, key=lambda pair: pair[1] - pair[0]):
-            value = -Add(*(self.shares[j][i] * found[i, m] for i in range(j + 1, m + 1)))
+            value = -sp.Add(*(self.shares[j][i] * found[i, m] for i in range(j + 1, m + 1)))
             if m > j + 1:
                 title = f"what {self.parameters[m]} by itself does to {self.parameters[j]}"
                 value = self._helper(f"X{j + 1}_{m + 1}", value, title, f"X_{{{j + 1}{m + 1}}}")

@@ -8,23 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sympy import (
-    Add,
-    Basic,
-    Expr,
-    Indexed,
-    Integer,
-    Mul,
-    Sum,
-    Symbol,
-    expand,
-    expand_log,
-    expand_power_base,
-    nan,
-    oo,
-    powsimp,
-    zoo,
-)
+import sympy as sp
 
 _MOST_WRITTEN = 30
 """A sum of known size, up to this many terms, is written out."""
@@ -32,25 +16,25 @@ _MOST_WRITTEN = 30
 
 def in_terms(expression: Any) -> Any:
     """Bring every sum of an expression into the common form."""
-    if not isinstance(expression, Basic) or not expression.has(Sum):
+    if not isinstance(expression, sp.Basic) or not expression.has(sp.Sum):
         return expression
-    if isinstance(expression, Sum):
+    if isinstance(expression, sp.Sum):
         *inner, limits = expression.limits
-        body = in_terms(Sum(expression.function, *inner) if inner else expression.function)
-        body = expand(expand_log(expand_power_base(body)))
-        return Add(*(_of_term(term, *limits) for term in Add.make_args(body)))
+        body = in_terms(sp.Sum(expression.function, *inner) if inner else expression.function)
+        body = sp.expand(sp.expand_log(sp.expand_power_base(body)))
+        return sp.Add(*(_of_term(term, *limits) for term in sp.Add.make_args(body)))
     return expression.func(*(in_terms(argument) for argument in expression.args))
 
 
-def _of_term(term: Expr, index: Symbol, low: Expr, high: Expr) -> Expr:
+def _of_term(term: sp.Expr, index: sp.Symbol, low: sp.Expr, high: sp.Expr) -> sp.Expr:
     """One term summed: what does not run with the index stands in front; powers of it have closed forms."""
     outer, inner = term.as_independent(index, as_Add=False)
-    if inner.is_polynomial(index) and not inner.has(Indexed, Sum) and (high - low + 1).is_nonnegative:
-        return Mul(outer, Sum(inner, (index, low, high)).doit())
-    return Mul(outer, _from_one(powsimp(inner), index, low, high))
+    if inner.is_polynomial(index) and not inner.has(sp.Indexed, sp.Sum) and (high - low + 1).is_nonnegative:
+        return sp.Mul(outer, sp.Sum(inner, (index, low, high)).doit())
+    return sp.Mul(outer, _from_one(sp.powsimp(inner), index, low, high))
 
 
-def _from_one(body: Expr, index: Symbol, low: Expr, high: Expr) -> Expr:
+def _from_one(body: sp.Expr, index: sp.Symbol, low: sp.Expr, high: sp.Expr) -> sp.Expr:
     """The sum from 1 to an end without a number in it, and the terms by which it differs."""
     body, shift = _unshifted(body, index)
     low, high = low + shift, high + shift
@@ -59,35 +43,35 @@ def _from_one(body: Expr, index: Symbol, low: Expr, high: Expr) -> Expr:
     if not (whole and beyond.is_Integer and abs(beyond) + abs(low) < _MOST_WRITTEN):
         return as_it_is
     if end == 0:
-        return Add(*(_at(body, index, row) for row in range(int(low), int(high) + 1)))
+        return sp.Add(*(_at(body, index, row) for row in range(int(low), int(high) + 1)))
     # The sums to `end`, to `high` and to `low - 1` must all have no term or more of them.
     if not (end.is_nonnegative and high.is_nonnegative and (high - low + 1).is_nonnegative):
         return as_it_is
     added = [*range(int(low), 1), *(end + n for n in range(1, int(beyond) + 1))]
     missing = [*range(1, int(low)), *(end - n for n in range(int(-beyond)))]
     terms = [_at(body, index, row) for row in added] + [-_at(body, index, row) for row in missing]
-    if any(term.has(nan, zoo, oo) for term in terms):
+    if any(term.has(sp.nan, sp.zoo, sp.oo) for term in terms):
         return as_it_is
-    return Add(_named(body, index, Integer(1), end), *terms)
+    return sp.Add(_named(body, index, sp.Integer(1), end), *terms)
 
 
-def _unshifted(body: Expr, index: Symbol) -> tuple[Expr, Expr]:
+def _unshifted(body: sp.Expr, index: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """The body with X[q] where all its cells were X[q + c], and c."""
-    shifts = {cell.indices[0] - index for cell in body.atoms(Indexed) if cell.has(index)}
-    shift = shifts.pop() if len(shifts) == 1 else Integer(0)
-    return (body.xreplace({index: index - shift}), shift) if shift.is_Integer else (body, Integer(0))
+    shifts = {cell.indices[0] - index for cell in body.atoms(sp.Indexed) if cell.has(index)}
+    shift = shifts.pop() if len(shifts) == 1 else sp.Integer(0)
+    return (body.xreplace({index: index - shift}), shift) if shift.is_Integer else (body, sp.Integer(0))
 
 
-def _at(body: Expr, index: Symbol, row: Expr | int) -> Expr:
-    return in_terms(body.xreplace({index: Integer(row) if isinstance(row, int) else row}))
+def _at(body: sp.Expr, index: sp.Symbol, row: sp.Expr | int) -> sp.Expr:
+    return in_terms(body.xreplace({index: sp.Integer(row) if isinstance(row, int) else row}))
 
 
-def _named(body: Expr, index: Symbol, low: Expr, high: Expr) -> Sum:
+def _named(body: sp.Expr, index: sp.Symbol, low: sp.Expr, high: sp.Expr) -> sp.Sum:
     """A sum whose running number is called by how deep sums are nested in it, not as its author called it."""
     kind = {"integer": True, "positive": True} if low.is_positive and index.is_integer else index.assumptions0
-    name = Symbol(f"row {_depth(body)}", **kind)
-    return Sum(body.xreplace({index: name}), (name, low, high))
+    name = sp.Symbol(f"row {_depth(body)}", **kind)
+    return sp.Sum(body.xreplace({index: name}), (name, low, high))
 
 
-def _depth(expression: Basic) -> int:
-    return max((1 + _depth(total.function) for total in expression.atoms(Sum)), default=0)
+def _depth(expression: sp.Basic) -> int:
+    return max((1 + _depth(total.function) for total in expression.atoms(sp.Sum)), default=0)

@@ -9,24 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sympy import (
-    Add,
-    And,
-    Basic,
-    Expr,
-    Indexed,
-    Integral,
-    Mul,
-    Number,
-    Or,
-    Piecewise,
-    Pow,
-    Rational,
-    Rel,
-    Sum,
-    Symbol,
-    sstr,
-)
+import sympy as sp
 from sympy.core.function import Application
 
 from .equation import Equation
@@ -56,7 +39,7 @@ def text(expression: Any, vocabulary: Vocabulary) -> str:
     "x_m2*(v'_1/v'_2)^(2/(alpha + 1))"
     >>> text(LEDGER["(12c)"].members[1], LEDGER.vocabulary)
     "m_red*v'_2^2/2*(alpha + 1)/x_m2^(alpha + 1)"
-    >>> text(Symbol("F") / Symbol("A"), LEDGER.vocabulary)
+    >>> text(sp.Symbol("F") / sp.Symbol("A"), LEDGER.vocabulary)
     'F/A'
     """
     return Wording(vocabulary).text(expression)
@@ -83,25 +66,25 @@ class Wording:
     def _write(self, expression: Any) -> tuple[str, int]:
         """The text of an expression and how tightly it holds together."""
         match expression:
-            case Indexed():
+            case sp.Indexed():
                 return self._name(expression.base.label, ",".join(map(self.text, expression.indices))), _ATOM
-            case Symbol():
+            case sp.Symbol():
                 return self._name(expression, ""), _ATOM
-            case Number():
+            case sp.Number():
                 tight = _SIGN if expression < 0 else _PRODUCT if not expression.is_Integer else _ATOM
-                return sstr(expression, full_prec=False), tight
-            case Add():
+                return sp.sstr(expression, full_prec=False), tight
+            case sp.Add():
                 return self._sum(expression), _SUM
-            case Mul():
+            case sp.Mul():
                 return self._product(expression)
-            case Pow():
+            case sp.Pow():
                 return self._power(expression)
-            case Piecewise():
+            case sp.Piecewise():
                 return "; ".join(
                     f"{self.text(law)} for {self.text(where)}" for law, where in expression.args
                 ), _SUM
-            case Integral() | Sum() | OrderStatistic():
-                name = {Integral: "int", Sum: "sum"}.get(type(expression)) or expression.word
+            case sp.Integral() | sp.Sum() | OrderStatistic():
+                name = {sp.Integral: "int", sp.Sum: "sum"}.get(type(expression)) or expression.word
                 ends = [
                     f"{self.text(variable)} = {self.text(low)}..{self.text(high)}"
                     for variable, low, high in expression.limits
@@ -109,35 +92,35 @@ class Wording:
                 if (member := member_of(expression)) is not None:
                     ends = [" in ".join(map(self.text, member.args))]
                 return f"{name}({self.text(taken_of(expression))}, {', '.join(ends)})", _ATOM
-            case And():
+            case sp.And():
                 return self._chain(expression), _SUM
-            case Or():
+            case sp.Or():
                 return " or ".join(map(self.text, expression.args)), _SUM
-            case Rel():
+            case sp.Rel():
                 sign = {"==": "=", "!=": "<>"}.get(expression.rel_op, expression.rel_op)
                 return f"{self.text(expression.lhs)} {sign} {self.text(expression.rhs)}", _SUM
             case Application():
                 name = self._name(
-                    Symbol(_FUNCTIONS.get(expression.func.__name__, expression.func.__name__)), ""
+                    sp.Symbol(_FUNCTIONS.get(expression.func.__name__, expression.func.__name__)), ""
                 )
                 return f"{name}({', '.join(map(self.text, expression.args))})", _ATOM
-        return sstr(expression), _ATOM if isinstance(expression, Basic) and expression.is_Atom else _SUM
+        return sp.sstr(expression), _ATOM if isinstance(expression, sp.Basic) and expression.is_Atom else _SUM
 
     def _inside(self, expression: Any, tight: int) -> str:
         """The text of a part, in parentheses where it holds together less tightly than it must."""
         written, holds = self._write(expression)
         return written if holds >= tight else f"({written})"
 
-    def _name(self, symbol: Symbol, subscript: str) -> str:
+    def _name(self, symbol: sp.Symbol, subscript: str) -> str:
         quantity = self.vocabulary.find(symbol)
         if quantity is not None and quantity.text:
             return quantity.called(subscript)
         return subscripted(str(symbol), subscript)
 
-    def _sum(self, expression: Add) -> str:
+    def _sum(self, expression: sp.Add) -> str:
         written = ""
-        for term in flat(expression, Add):
-            part = self._inside(term, _PRODUCT) if not isinstance(term, Number) else self.text(term)
+        for term in flat(expression, sp.Add):
+            part = self._inside(term, _PRODUCT) if not isinstance(term, sp.Number) else self.text(term)
             negative = part.startswith("-")
             part = part.removeprefix("-")
             if not written:
@@ -146,9 +129,9 @@ class Wording:
                 written += f" {'-' if negative else '+'} {part}"
         return written
 
-    def _product(self, expression: Mul) -> tuple[str, int]:
+    def _product(self, expression: sp.Mul) -> tuple[str, int]:
         """Factors from left to right; what has a negative power is divided by."""
-        factors = [factor for factor in flat(expression, Mul) if factor != 1]
+        factors = [factor for factor in flat(expression, sp.Mul) if factor != 1]
         sign = ""
         while factors and factors[0] == -1:
             sign = "" if sign else "-"
@@ -169,20 +152,20 @@ class Wording:
             written = f"({written})"
         return sign + written, _PRODUCT if not sign else _SIGN if len(factors) == 1 else _PRODUCT
 
-    def _power(self, expression: Pow) -> tuple[str, int]:
+    def _power(self, expression: sp.Pow) -> tuple[str, int]:
         base, exponent = expression.args
         below = _divisor(expression)
         if below is not None:
             return f"1/{self._inside(below, _POWER)}", _PRODUCT
-        if exponent == Rational(1, 2):
+        if exponent == sp.Rational(1, 2):
             return f"sqrt({self.text(base)})", _ATOM
         return f"{self._inside(base, _ATOM)}^{self._inside(exponent, _ATOM)}", _POWER
 
-    def _chain(self, expression: And) -> str:
+    def _chain(self, expression: sp.And) -> str:
         """Two inequalities that meet in the middle are one: a <= x <= b."""
         first, second = expression.args if len(expression.args) == 2 else (None, None)
         for a, b in ((first, second), (second, first)):
-            if isinstance(a, Rel) and isinstance(b, Rel) and a.rel_op in ("<", "<="):
+            if isinstance(a, sp.Rel) and isinstance(b, sp.Rel) and a.rel_op in ("<", "<="):
                 if a.rhs == b.lhs and b.rel_op in ("<", "<="):
                     return f"{self.text(a.lhs)} {a.rel_op} {self.text(a.rhs)} {b.rel_op} {self.text(b.rhs)}"
                 if a.rhs == b.rhs and b.rel_op in (">", ">="):
@@ -190,7 +173,7 @@ class Wording:
         return " and ".join(map(self.text, expression.args))
 
 
-def flat(expression: Any, kind: type[Basic]) -> list[Any]:
+def flat(expression: Any, kind: type[sp.Basic]) -> list[Any]:
     """The parts of nested sums or nested products, from left to right."""
     if not isinstance(expression, kind):
         return [expression]
@@ -198,13 +181,13 @@ def flat(expression: Any, kind: type[Basic]) -> list[Any]:
 
 
 def _is_reciprocal(factor: Any) -> bool:
-    return isinstance(factor, Pow) and _divisor(factor) is not None
+    return isinstance(factor, sp.Pow) and _divisor(factor) is not None
 
 
-def _divisor(factor: Any) -> Expr | None:
+def _divisor(factor: Any) -> sp.Expr | None:
     """What a factor divides by, if it does."""
-    if isinstance(factor, Rational) and factor.p == 1 and factor.q != 1:
-        return Rational(factor.q)
-    if isinstance(factor, Pow) and isinstance(factor.exp, Number) and factor.exp < 0:
-        return factor.base if factor.exp == -1 else Pow(factor.base, -factor.exp, evaluate=False)
+    if isinstance(factor, sp.Rational) and factor.p == 1 and factor.q != 1:
+        return sp.Rational(factor.q)
+    if isinstance(factor, sp.Pow) and isinstance(factor.exp, sp.Number) and factor.exp < 0:
+        return factor.base if factor.exp == -1 else sp.Pow(factor.base, -factor.exp, evaluate=False)
     return None

@@ -12,24 +12,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from sympy import (
-    Add,
-    And,
-    Basic,
-    Expr,
-    Float,
-    Indexed,
-    Integer,
-    Integral,
-    Mul,
-    Number,
-    NumberSymbol,
-    Piecewise,
-    Pow,
-    Rational,
-    Sum,
-    Symbol,
-)
+import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
@@ -66,15 +49,15 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         """Refuse what has no LaTeX: half an equation is worse than none."""
         raise TypeError(f"no LaTeX for {type(expr).__name__}: {expr}")
 
-    def _print_Basic(self, expr: Basic) -> str:
+    def _print_Basic(self, expr: sp.Basic) -> str:
         return self.emptyPrinter(expr)
 
     # names
 
-    def _print_Symbol(self, expr: Symbol, style: str = "plain") -> str:
+    def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
         return name_latex(expr.name, self.names)
 
-    def _print_Indexed(self, expr: Indexed) -> str:
+    def _print_Indexed(self, expr: sp.Indexed) -> str:
         return name_latex(name_of(expr), self.names, ",".join(self._print(i) for i in expr.indices))
 
     def _print_AppliedUndef(self, expr: AppliedUndef) -> str:
@@ -82,17 +65,17 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
 
     # sums and products
 
-    def _print_Add(self, expr: Add, order: str | None = None) -> str:
+    def _print_Add(self, expr: sp.Add, order: str | None = None) -> str:
         return join(self.terms(expr))
 
-    def sides(self, members: Iterable[Expr]) -> list[Terms]:
+    def sides(self, members: Iterable[sp.Expr]) -> list[Terms]:
         """The terms of the sides of an equation, or of one relation."""
         return [self.terms(member) for member in members]
 
-    def terms(self, expr: Expr) -> Terms:
+    def terms(self, expr: sp.Expr) -> Terms:
         """The terms of a sum, each with whether it is subtracted."""
-        summands = flat(expr, Add)
-        if len(summands) == 1 and isinstance(expr, Piecewise):
+        summands = flat(expr, sp.Add)
+        if len(summands) == 1 and isinstance(expr, sp.Piecewise):
             return [(False, self._print(expr))]
         parts = [self._signed(term) for term in summands]
         if len(parts) > 1 and parts[0][0] and _canonical(expr):
@@ -100,19 +83,19 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             parts.insert(0, parts.pop(first))
         return parts
 
-    def _signed(self, expr: Expr) -> tuple[bool, str]:
-        if isinstance(expr, Mul):
+    def _signed(self, expr: sp.Expr) -> tuple[bool, str]:
+        if isinstance(expr, sp.Mul):
             return self._product(expr)
-        if isinstance(expr, Number) and expr.is_negative:
+        if isinstance(expr, sp.Number) and expr.is_negative:
             return True, self._print(-expr)
         text = self._print(expr)
-        return False, self._bracket(text) if isinstance(expr, Piecewise) else text
+        return False, self._bracket(text) if isinstance(expr, sp.Piecewise) else text
 
-    def _print_Mul(self, expr: Mul) -> str:
+    def _print_Mul(self, expr: sp.Mul) -> str:
         negative, text = self._product(expr)
         return ("-" if negative else "") + text
 
-    def _product(self, expr: Mul) -> tuple[bool, str]:
+    def _product(self, expr: sp.Mul) -> tuple[bool, str]:
         """The sign of a product and its LaTeX without it."""
         negative, units = self._units(expr)
         if not units:
@@ -125,19 +108,19 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             text += _apart(text, printed) + printed
         return negative, text
 
-    def _units(self, expr: Mul) -> tuple[bool, list[tuple[list[Expr], list[Expr]]]]:
+    def _units(self, expr: sp.Mul) -> tuple[bool, list[tuple[list[sp.Expr], list[sp.Expr]]]]:
         """Fractions and factors, from left to right: numerators and denominators of each."""
         negative = False
-        units: list[tuple[list[Expr], list[Expr]]] = []
+        units: list[tuple[list[sp.Expr], list[sp.Expr]]] = []
         one = _canonical(expr)  # sympy's order says nothing: one fraction
         closed = True
         for place, written in enumerate(_factors(expr)):
-            below_zero = bool(isinstance(written, Number) and written.is_negative)
+            below_zero = bool(isinstance(written, sp.Number) and written.is_negative)
             negative ^= below_zero
             factor = -written if below_zero else written
             if factor == 1:
                 continue
-            if isinstance(factor, Mul):
+            if isinstance(factor, sp.Mul):
                 other, inner = self._units(factor)
                 negative ^= other
                 # A product in parentheses stands for itself if it has a fraction, else joins what is there.
@@ -148,7 +131,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
                 closed = False
                 continue
             above, below = _halves(factor)
-            if place <= 1 and not units and above and below and isinstance(factor, Rational):
+            if place <= 1 and not units and above and below and isinstance(factor, sp.Rational):
                 units.append((above, below))  # a number such as 1/2 stands for itself, in front
                 closed = True
                 continue
@@ -160,29 +143,29 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             units[-1][1].extend(below)
         return negative, units
 
-    def _unit(self, above: list[Expr], below: list[Expr], alone: bool, last: bool) -> str:
+    def _unit(self, above: list[sp.Expr], below: list[sp.Expr], alone: bool, last: bool) -> str:
         if not below:
             return self._chain(above, alone and len(above) == 1, last)
         if (
             len(above) == 1
-            and isinstance(above[0], Sum)
+            and isinstance(above[0], sp.Sum)
             and last
-            and not any(part.has(Sum) for part in below)
+            and not any(part.has(sp.Sum) for part in below)
         ):
             # A mean: the sum beside the bar keeps its limits where they can be read.
             return rf"\frac{{1}}{{{self._chain(below, len(below) == 1, True)}}} {self._print(above[0])}"
         top = self._chain(above, len(above) == 1, True) if above else "1"
         return rf"\frac{{{top}}}{{{self._chain(below, len(below) == 1, True)}}}"
 
-    def _chain(self, factors: list[Expr], bare: bool, last: bool) -> str:
+    def _chain(self, factors: list[sp.Expr], bare: bool, last: bool) -> str:
         """Factors side by side, with parentheses where they are needed."""
         text = ""
         for place, factor in enumerate(factors):
             printed = self._print(factor)
             ends = last and place == len(factors) - 1
             if not bare and (
-                isinstance(factor, (Add, Piecewise))
-                or (isinstance(factor, (Sum, OrderStatistic, Integral)) and not ends)
+                isinstance(factor, (sp.Add, sp.Piecewise))
+                or (isinstance(factor, (sp.Sum, OrderStatistic, sp.Integral)) and not ends)
             ):
                 printed = self._bracket(printed)
             text += _apart(text, printed) + printed
@@ -195,15 +178,15 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
 
     # powers and functions
 
-    def _print_Pow(self, expr: Pow) -> str:
+    def _print_Pow(self, expr: sp.Pow) -> str:
         base, exponent = expr.base, expr.exp
-        if exponent == Rational(1, 2):
+        if exponent == sp.Rational(1, 2):
             return rf"\sqrt{{{self._print(base)}}}"
         above, below = _halves(expr)
         if below:
             return self._unit(above, below, True, True)
         raised = self._inline(exponent)
-        if isinstance(base, (Symbol, NumberSymbol, Indexed, AppliedUndef)):
+        if isinstance(base, (sp.Symbol, sp.NumberSymbol, sp.Indexed, AppliedUndef)):
             name = self._print(base)
             primed = re.fullmatch(r"(\\?[A-Za-z]+)('+)(_\{.*\})?", name)
             if primed:  # a prime is a superscript already, and there is only one
@@ -211,16 +194,16 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
                 return f"{primed[1]}{primed[3] or ''}^{{{primes} {raised}}}"
             if r"\cdot" not in name:
                 return f"{name}^{{{raised}}}"
-        if isinstance(base, Number) and base.is_integer and base.is_nonnegative:
+        if isinstance(base, sp.Number) and base.is_integer and base.is_nonnegative:
             return f"{self._print(base)}^{{{raised}}}"
         return f"{self._bracket(self._print(base))}^{{{raised}}}"
 
-    def _inline(self, expr: Expr) -> str:
+    def _inline(self, expr: sp.Expr) -> str:
         """An exponent: fractions with a slash, for a bar is hard to read up there."""
-        if isinstance(expr, Rational) and not expr.is_integer:
+        if isinstance(expr, sp.Rational) and not expr.is_integer:
             return f"{expr.p}/{expr.q}"
-        if isinstance(expr, (Mul, Pow)):
-            negative, units = self._units(expr) if isinstance(expr, Mul) else (False, [_halves(expr)])
+        if isinstance(expr, (sp.Mul, sp.Pow)):
+            negative, units = self._units(expr) if isinstance(expr, sp.Mul) else (False, [_halves(expr)])
             if len(units) == 1 and units[0][1]:
                 above, below = units[0]
                 top = self._chain(above, False, True) if above else "1"
@@ -230,14 +213,14 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
                 return f"{'-' if negative else ''}{top}/{bottom}"
         return str(self._print(expr))
 
-    def _print_exp(self, expr: Expr, exp: str | None = None) -> str:
+    def _print_exp(self, expr: sp.Expr, exp: str | None = None) -> str:
         # e is the coefficient of restitution.
         return self._call(r"\exp", self._print(expr.args[0]), exp)
 
-    def _print_log(self, expr: Expr, exp: str | None = None) -> str:
+    def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._call(r"\ln", self._print(expr.args[0]), exp)
 
-    def _print_beta(self, expr: Expr, exp: str | None = None) -> str:
+    def _print_beta(self, expr: sp.Expr, exp: str | None = None) -> str:
         # sympy's own writes what stands in it as text, not as LaTeX
         return self._call(r"\operatorname{B}", ", ".join(map(self._inline, expr.args)), exp)
 
@@ -245,19 +228,19 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         text = function + self._bracket(inside)
         return text if exp is None else f"{self._bracket(text)}^{{{exp}}}"
 
-    def _print_Max(self, expr: Expr, exp: str | None = None) -> str:
+    def _print_Max(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._extreme(r"\max", expr)
 
-    def _print_Min(self, expr: Expr, exp: str | None = None) -> str:
+    def _print_Min(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._extreme(r"\min", expr)
 
-    def _extreme(self, which: str, expr: Expr) -> str:
+    def _extreme(self, which: str, expr: sp.Expr) -> str:
         inside = ", ".join(self._print(argument) for argument in sorted(expr.args, key=str))
         return which + self._bracket(inside)
 
     # sums, integrals, cases
 
-    def _print_Sum(self, expr: Sum) -> str:
+    def _print_Sum(self, expr: sp.Sum) -> str:
         text = ""
         for index, low, high in expr.limits:
             text += rf"\sum_{{{self._print(index)}={self._print(low)}}}^{{{self._print(high)}}} "
@@ -265,7 +248,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
             text = rf"\sum_{{{within}}} "
         return text + self._body(taken_of(expr))
 
-    def _in_group(self, expr: Sum | OrderStatistic) -> str:
+    def _in_group(self, expr: sp.Sum | OrderStatistic) -> str:
         """Which rows it is of, if it is of those of a group."""
         member = member_of(expr)
         return "" if member is None else r" \in ".join(map(self._print, member.args))
@@ -277,22 +260,26 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         runs = self._in_group(expr) or runs
         return rf"\underset{{{runs}}}{{\mathrm{{{expr.word}}}}} \, {self._body(taken_of(expr))}"
 
-    def _print_Integral(self, expr: Integral) -> str:
+    def _print_Integral(self, expr: sp.Integral) -> str:
         text, ends = "", ""
         for variable, low, high in expr.limits:
             text += rf"\int_{{{self._print(low)}}}^{{{self._print(high)}}}{self.after_integral}"
             ends = rf" \, d{self._print(variable)}" + ends
         return text + self._body(expr.function) + ends
 
-    def _body(self, expr: Expr) -> str:
+    def _body(self, expr: sp.Expr) -> str:
         """What stands behind a sign of summation or integration."""
-        if isinstance(expr, Mul):  # sympy writes 1*(a + b)
+        if isinstance(expr, sp.Mul):  # sympy writes 1*(a + b)
             factors = [factor for factor in expr.args if factor != 1]
             expr = factors[0] if len(factors) == 1 else expr
         printed = self._print(expr)
-        return self._bracket(printed) if isinstance(expr, (Add, Piecewise)) or printed[0] == "-" else printed
+        return (
+            self._bracket(printed)
+            if isinstance(expr, (sp.Add, sp.Piecewise)) or printed[0] == "-"
+            else printed
+        )
 
-    def _print_Piecewise(self, expr: Piecewise) -> str:
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         rows = []
         for body, condition in expr.args:
             when = r"\text{otherwise}" if condition == True else self._print(condition)  # noqa: E712
@@ -302,7 +289,7 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
     def _print_Relational(self, expr: Relational) -> str:
         return rf"{self._print(expr.lhs)} {_RELATIONS[expr.rel_op]} {self._print(expr.rhs)}"
 
-    def _print_And(self, expr: And) -> str:
+    def _print_And(self, expr: sp.And) -> str:
         """Join relations that share a side: ``0 <= x <= x_m``."""
         if not all(isinstance(part, Relational) for part in expr.args):
             return r" \ \text{and}\ ".join(self._print(part) for part in expr.args)
@@ -332,50 +319,50 @@ class MathPrinter(LatexPrinter):  # type: ignore[misc] # sympy has no types
         return r" \ \text{and}\ ".join(printed)
 
 
-def _upwards(relation: Relational) -> tuple[Expr, str, Expr]:
+def _upwards(relation: Relational) -> tuple[sp.Expr, str, sp.Expr]:
     """A relation read from the smaller side."""
     if relation.rel_op in _MIRROR:
         return relation.rhs, _MIRROR[relation.rel_op], relation.lhs
     return relation.lhs, relation.rel_op, relation.rhs
 
 
-def _canonical(expr: Expr) -> bool:
+def _canonical(expr: sp.Expr) -> bool:
     """Whether sympy has ordered the arguments, so that no author's order is left in them."""
     if any(isinstance(argument, expr.func) for argument in expr.args):
         return False
     return bool(expr.func(*expr.args).args == expr.args)
 
 
-def _factors(expr: Expr) -> list[Expr]:
+def _factors(expr: sp.Expr) -> list[sp.Expr]:
     """The factors of ``a*b/c*d`` in order; a product that was written in parentheses stays one."""
     head, *rest = expr.args
-    while isinstance(head, Number) and head == -1 and len(rest) == 1 and isinstance(rest[0], Mul):
+    while isinstance(head, sp.Number) and head == -1 and len(rest) == 1 and isinstance(rest[0], sp.Mul):
         return [head, *_factors(rest[0])]  # -(a*b)
-    return [*(_factors(head) if isinstance(head, Mul) else [head]), *rest]
+    return [*(_factors(head) if isinstance(head, sp.Mul) else [head]), *rest]
 
 
-def _halves(factor: Basic) -> tuple[list[Expr], list[Expr]]:
+def _halves(factor: sp.Basic) -> tuple[list[sp.Expr], list[sp.Expr]]:
     """What a factor puts above and below the bar of a fraction."""
-    if isinstance(factor, Rational) and not factor.is_integer:
+    if isinstance(factor, sp.Rational) and not factor.is_integer:
         # In lowest terms tens stand above only where a decimal number stood below: 10/37 was typed 1/3.7.
         tens = 0
         while factor.p % 10 ** (tens + 1) == 0 and factor.q > 10 ** (tens + 1):
             tens += 1
-        above = Integer(factor.p // 10**tens)
+        above = sp.Integer(factor.p // 10**tens)
         if not tens:
-            return [above], [Integer(factor.q)]
-        return [] if above == 1 else [above], [Float(f"{factor.q}e-{tens}")]
-    if isinstance(factor, Pow):
+            return [above], [sp.Integer(factor.q)]
+        return [] if above == 1 else [above], [sp.Float(f"{factor.q}e-{tens}")]
+    if isinstance(factor, sp.Pow):
         exponent = factor.exp
-        if isinstance(exponent, Number) and exponent.is_negative:
+        if isinstance(exponent, sp.Number) and exponent.is_negative:
             base, power = factor.base, -exponent
             if power == 1:
-                return [], _factors(base) if isinstance(base, Mul) and not _divides(base) else [base]
-            return [], [Pow(base, power, evaluate=False)]
-        if isinstance(exponent, Mul) and exponent.args[0] == -1:
+                return [], _factors(base) if isinstance(base, sp.Mul) and not _divides(base) else [base]
+            return [], [sp.Pow(base, power, evaluate=False)]
+        if isinstance(exponent, sp.Mul) and exponent.args[0] == -1:
             rest = exponent.args[1:]
-            power = rest[0] if len(rest) == 1 else Mul(*rest, evaluate=False)
-            return [], [Pow(factor.base, power, evaluate=False)]
+            power = rest[0] if len(rest) == 1 else sp.Mul(*rest, evaluate=False)
+            return [], [sp.Pow(factor.base, power, evaluate=False)]
     return [factor], []
 
 
@@ -387,5 +374,5 @@ def _apart(before: str, factor: str) -> str:
     return r" \, " if words else " " * bool(before)
 
 
-def _divides(expr: Mul) -> bool:
-    return any(_halves(factor)[1] or isinstance(factor, Mul) for factor in _factors(expr))
+def _divides(expr: sp.Mul) -> bool:
+    return any(_halves(factor)[1] or isinstance(factor, sp.Mul) for factor in _factors(expr))

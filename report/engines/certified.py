@@ -13,28 +13,7 @@ from math import comb, prod
 from typing import Any
 
 import numpy as np
-from sympy import (
-    Add,
-    Expr,
-    Indexed,
-    Integer,
-    Mul,
-    Piecewise,
-    Pow,
-    Rel,
-    Symbol,
-    ceiling,
-    degree,
-    exp,
-    expand_power_exp,
-    factor,
-    false,
-    floor,
-    fraction,
-    sift,
-    sign,
-    together,
-)
+import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from ...derivations.differentiated import differentiated
@@ -51,7 +30,7 @@ from .mpmath_intervals import differences, printed
 from .numpy_code import kernel
 from .roots import magnitude
 
-JUMPS = (floor, ceiling, sign, Piecewise)
+JUMPS = (sp.floor, sp.ceiling, sp.sign, sp.Piecewise)
 _HALVINGS, _PARTS = 16, 64
 """How often an interval of the unknown is halved, and how many parts may be open after that."""
 _LARGEST = 200
@@ -100,17 +79,17 @@ def _span(sheet: Sheet, leaf: Leaf) -> tuple[float, float]:
     return 0.0 if sheet[leaf.name].positive else -np.inf, np.inf
 
 
-def _needed(column: Column) -> dict[str, list[Rel]]:
+def _needed(column: Column) -> dict[str, list[sp.Rel]]:
     """What a column requires of single cells: that they are above or below a number."""
-    found: dict[str, list[Rel]] = {}
+    found: dict[str, list[sp.Rel]] = {}
     for condition, _ in column.requires:
-        single = isinstance(condition, Rel) and isinstance(condition.lhs, (Symbol, Indexed))
+        single = isinstance(condition, sp.Rel) and isinstance(condition.lhs, (sp.Symbol, sp.Indexed))
         if single and condition.rhs.is_number:
             found.setdefault(name_of(condition.lhs), []).append(condition)
     return found
 
 
-def _within(span: tuple[float, float], needed: Iterable[Rel]) -> tuple[float, float]:
+def _within(span: tuple[float, float], needed: Iterable[sp.Rel]) -> tuple[float, float]:
     low, high = span
     for each in needed:
         if each.rel_op in (">", ">="):
@@ -120,13 +99,13 @@ def _within(span: tuple[float, float], needed: Iterable[Rel]) -> tuple[float, fl
     return low, high
 
 
-Cells = tuple[tuple[Symbol, float, float], ...]
+Cells = tuple[tuple[sp.Symbol, float, float], ...]
 
 
 @lru_cache(maxsize=256)
-def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Cells) -> bool:
+def _by_stretch(form: sp.Expr, points: tuple[sp.Expr, ...], unknown: sp.Symbol, cells: Cells) -> bool:
     """Whether the slope has one sign between points that follow one another, by mpmath's intervals."""
-    plain = Symbol(unknown.name, real=True)
+    plain = sp.Symbol(unknown.name, real=True)
     steepness, known = slope(form.xreplace({unknown: plain}), plain)
     compared = differences(known)
     if compared is None:
@@ -150,13 +129,13 @@ def _by_stretch(form: Expr, points: tuple[Expr, ...], unknown: Symbol, cells: Ce
 
 
 @lru_cache(maxsize=256)
-def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) -> bool:
+def _one_way(form: sp.Expr, ends: tuple[sp.Expr, ...], unknown: sp.Symbol, cells: Cells) -> bool:
     """Whether the slope has one sign all over the interval, by assumptions or by intervals of arrays.
 
     Also as a product of factors, by the way from the lower end: 1 - exp(-q)/e of q > -log(e) is 1 - exp(-s).
     """
     low, high = ends
-    plain = Symbol(unknown.name, real=True, **({"positive": True} if low.is_nonnegative else {}))
+    plain = sp.Symbol(unknown.name, real=True, **({"positive": True} if low.is_nonnegative else {}))
     steepness, known = slope(form.xreplace({unknown: plain}), plain)
     if known == True and (steepness.is_nonnegative or steepness.is_nonpositive):  # noqa: E712 - sympy's true
         return True
@@ -165,22 +144,26 @@ def _one_way(form: Expr, ends: tuple[Expr, ...], unknown: Symbol, cells: Cells) 
         return True
     if steepness.has(RowSum):
         return False
-    way = Symbol(unknown.name, positive=True)
-    along = together(expand_power_exp(steepness.xreplace({plain: low + way})))
-    if _terms(fraction(along)[0]) > _LARGEST:
+    way = sp.Symbol(unknown.name, positive=True)
+    along = sp.together(sp.expand_power_exp(steepness.xreplace({plain: low + way})))
+    if _terms(sp.fraction(along)[0]) > _LARGEST:
         return False
     open_ones = [
         base
-        for each in Mul.make_args(factor(along))
+        for each in sp.Mul.make_args(sp.factor(along))
         for base, power in (each.as_base_exp(),)
         if not (each.is_nonnegative or each.is_nonpositive or power.is_even)
     ]
-    continuous, whole = known.xreplace({plain: low + way}), (Integer(0), high - low)
-    return all(_is_of_one_sign(each, continuous, way, whole, span) for each in (*open_ones, Integer(1)))
+    continuous, whole = known.xreplace({plain: low + way}), (sp.Integer(0), high - low)
+    return all(_is_of_one_sign(each, continuous, way, whole, span) for each in (*open_ones, sp.Integer(1)))
 
 
 def _is_of_one_sign(
-    steepness: Expr, known: Boolean, plain: Symbol, ends: tuple[Expr, ...], span: Mapping[Symbol, Intervals]
+    steepness: sp.Expr,
+    known: Boolean,
+    plain: sp.Symbol,
+    ends: tuple[sp.Expr, ...],
+    span: Mapping[sp.Symbol, Intervals],
 ) -> bool:
     """Whether a slope is, part by part: where intervals leave it open, both halves are asked."""
     try:
@@ -205,19 +188,19 @@ def _is_of_one_sign(
     return False
 
 
-def _terms(expression: Expr) -> int:
+def _terms(expression: sp.Expr) -> int:
     """How many terms an expression has at most when it is multiplied out."""
     match expression:
-        case Add():
+        case sp.Add():
             return sum(map(_terms, expression.args))
-        case Mul():
+        case sp.Mul():
             return prod(map(_terms, expression.args))
-        case Pow(base=base, exp=Integer(p=power)) if power > 0:
+        case sp.Pow(base=base, exp=sp.Integer(p=power)) if power > 0:
             return comb(_terms(base) + power - 1, power)
     return 1
 
 
-def _run(function: Kernel, span: Mapping[Symbol, Intervals]) -> list[Intervals]:
+def _run(function: Kernel, span: Mapping[sp.Symbol, Intervals]) -> list[Intervals]:
     """Expressions over all that their symbols may be."""
     named = {symbol.name: each for symbol, each in span.items()}
     given: Any = [named[name] for name in function.arguments]
@@ -235,31 +218,31 @@ class _AnyRows:
         )
 
 
-def slope(form: Expr, unknown: Symbol) -> tuple[Expr, Boolean]:
+def slope(form: sp.Expr, unknown: sp.Symbol) -> tuple[sp.Expr, Boolean]:
     """The slope of a form, and where the form is sure to be continuous so that the slope tells its course.
 
     `unknown`: of which only is assumed what holds in the interval.
     """
     jumps = any(part.has(unknown) for part in form.atoms(*JUMPS))
-    return differentiated(form, unknown), false if jumps else defined(form)
+    return differentiated(form, unknown), sp.false if jumps else defined(form)
 
 
-def held(condition: Boolean) -> Expr:
+def held(condition: Boolean) -> sp.Expr:
     """1 where a condition holds, else 0."""
-    return Piecewise((1, condition), (0, True))
+    return sp.Piecewise((1, condition), (0, True))
 
 
-def typed_form(sheet: Sheet, plan: Plan, node: RootNode) -> tuple[Expr, Symbol]:
+def typed_form(sheet: Sheet, plan: Plan, node: RootNode) -> tuple[sp.Expr, sp.Symbol]:
     """The form of a root, and its unknown, in symbols of which only is assumed what they may be."""
-    plain = Symbol(node.unknown.name, real=True)
-    form: Expr = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
+    plain = sp.Symbol(node.unknown.name, real=True)
+    form: sp.Expr = node.form.xreplace({**typed_symbols(sheet, plan.leaves), node.unknown: plain})
     return form, plain
 
 
 def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
     """A function of what a root names and of its unknown: form, slope, whether that tells its course."""
     form, plain = typed_form(sheet, plan, node)
-    for steepness, known in (slope(form, plain), (form, false)):
+    for steepness, known in (slope(form, plain), (form, sp.false)):
         try:
             run = kernel([form, steepness, held(known)])
         except SheetError:
@@ -270,25 +253,25 @@ def enclosing(sheet: Sheet, plan: Plan, node: RootNode) -> Enclosing:
     raise SheetError(f"{node.column.name}: NumPy cannot compute {form}", node.column.name)
 
 
-def _exponents(expressions: tuple[Expr, ...], unknown: Symbol) -> list[Expr] | None:
+def _exponents(expressions: tuple[sp.Expr, ...], unknown: sp.Symbol) -> list[sp.Expr] | None:
     """Those of the terms of all sums, if each is at most four cells times one exponential of the unknown."""
     sums = sorted(set().union(*(each.atoms(RowSum) for each in expressions)), key=str)
     # With the sums put away nothing of the unknown may be left.
-    hidden = {each: Symbol(f"sum_{n}") for n, each in enumerate(sums)}
+    hidden = {each: sp.Symbol(f"sum_{n}") for n, each in enumerate(sums)}
     if not sums or any(each.xreplace(hidden).has(unknown) for each in expressions):
         return None
     found = []
     for terms, _ in (each.args for each in sums):
-        powers, rest = sift(Mul.make_args(terms), lambda part: part.func is exp, binary=True)
+        powers, rest = sp.sift(sp.Mul.make_args(terms), lambda part: part.func is sp.exp, binary=True)
         cells = [part.as_base_exp() for part in rest if not part.is_Number]
-        exponent = Add(*(power.args[0] for power in powers))
+        exponent = sp.Add(*(power.args[0] for power in powers))
         if (
             not all(cell.is_Symbol and times.is_Integer and times > 0 for cell, times in cells)
             or sum(times for _, times in cells) > 4
             or unknown in {cell for cell, _ in cells}
             or len(powers) > 1
             or not exponent.is_polynomial()
-            or degree(exponent, unknown) > 1
+            or sp.degree(exponent, unknown) > 1
         ):
             return None
         found.append(exponent)

@@ -8,38 +8,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any
 
-from sympy import (
-    Add,
-    And,
-    Basic,
-    Expr,
-    Ge,
-    Gt,
-    Le,
-    Lt,
-    Mul,
-    Ne,
-    Number,
-    Pow,
-    Rational,
-    Symbol,
-    acos,
-    asin,
-    asinh,
-    atan,
-    cos,
-    cosh,
-    cse,
-    exp,
-    log,
-    numbered_symbols,
-    pi,
-    sin,
-    sinh,
-    tan,
-    tanh,
-    true,
-)  # fmt: skip
+import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from ..plan.nodes import RowSum
@@ -47,13 +16,21 @@ from ..plan.nodes import RowSum
 FUNCTIONS = Path(__file__).resolve().parents[2] / "templates" / "minified" / "intervals.js"
 """The functions, a part for each."""
 
-_RISING = {exp: "exp", log: "log", asin: "asin", atan: "atan", tanh: "tanh", sinh: "sinh", asinh: "asinh"}
-_BY_OTHERS = {
-    tan: lambda x: sin(x) / cos(x),
-    acos: lambda x: pi / 2 - asin(x),
-    cosh: lambda x: (exp(x) + exp(-x)) / 2,
+_RISING = {
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.asin: "asin",
+    sp.atan: "atan",
+    sp.tanh: "tanh",
+    sp.sinh: "sinh",
+    sp.asinh: "asinh",
 }
-NOTHING = Symbol("ALL")
+_BY_OTHERS = {
+    sp.tan: lambda x: sp.sin(x) / sp.cos(x),
+    sp.acos: lambda x: sp.pi / 2 - sp.asin(x),
+    sp.cosh: lambda x: (sp.exp(x) + sp.exp(-x)) / 2,
+}
+NOTHING = sp.Symbol("ALL")
 """What stands for that of which the intervals know nothing: anything."""
 
 Ends = tuple[str, str]
@@ -68,27 +45,27 @@ def interval(expression: Any, wide: Container[str]) -> Ends:
     >>> from sympy.abc import x, y
     >>> interval(x * y**2 - 1, {"x"})
     ('plus(-1, -1, times(power(y, y, 2), up[0], x, x_), up[0])', 'up[0]')
-    >>> interval(log(x) / 3, "x")
+    >>> interval(sp.log(x) / 3, "x")
     ('times(rising(Math.log, x, x_), up[0], times(1, 1, power(3, 3, -1), up[0]), up[0])', 'up[0]')
     """
     if expression == NOTHING:
         return "-Infinity", "Infinity"
-    if isinstance(expression, Symbol):
+    if isinstance(expression, sp.Symbol):
         name = str(expression.name)
         return (name, f"{name}_" if name in wide else name)
     if expression.is_Integer:
         return str(expression), str(expression)
-    if isinstance(expression, Rational):
+    if isinstance(expression, sp.Rational):
         above, below = str(expression.p), str(expression.q)
         return _call("times", above, above, *_call("power", below, below, "-1"))
-    if isinstance(expression, Number) or expression == pi:
+    if isinstance(expression, sp.Number) or expression == sp.pi:
         number = repr(float(expression))
         return _call("out", number, number)
-    if isinstance(expression, (Add, Mul)):
-        function = "plus" if isinstance(expression, Add) else "times"
+    if isinstance(expression, (sp.Add, sp.Mul)):
+        function = "plus" if isinstance(expression, sp.Add) else "times"
         first, *others = sorted(interval(each, wide) for each in expression.args)
         return reduce(lambda found, each: _call(function, *found, *each), others, first)
-    if isinstance(expression, Pow):
+    if isinstance(expression, sp.Pow):
         base, exponent = expression.args
         if exponent.is_Integer:
             return _call("power", *interval(base, wide), str(exponent))
@@ -99,9 +76,9 @@ def interval(expression: Any, wide: Container[str]) -> Ends:
         return _call("rising", f"Math.{_RISING[type(expression)]}", *inner)
     if type(expression) in _BY_OTHERS:
         return interval(_BY_OTHERS[type(expression)](expression.args[0]), wide)
-    if isinstance(expression, cos):
+    if isinstance(expression, sp.cos):
         return _call("cosine", *interval(expression.args[0], wide))
-    if isinstance(expression, sin):
+    if isinstance(expression, sp.sin):
         quarter = _call("out", "-Math.PI / 2", "-Math.PI / 2")
         return _call("cosine", *_call("plus", *interval(expression.args[0], wide), *quarter))
     return interval(NOTHING, wide)
@@ -113,11 +90,11 @@ def _call(function: str, *arguments: str) -> Ends:
 
 def _certain(condition: Any, wide: Container[str]) -> str:
     """That a condition holds all over its intervals."""
-    if condition == true:
+    if condition == sp.true:
         return "true"
-    if isinstance(condition, And):
+    if isinstance(condition, sp.And):
         return " && ".join(_certain(each, wide) for each in sorted(condition.args, key=str))
-    signs = {Gt: "=== 1", Lt: "=== -1", Ne: "!== 0", Ge: "=== 1", Le: "=== -1"}
+    signs = {sp.Gt: "=== 1", sp.Lt: "=== -1", sp.Ne: "!== 0", sp.Ge: "=== 1", sp.Le: "=== -1"}
     if type(condition) in signs:
         ends = interval(condition.lhs - condition.rhs, wide)
         return f"side({', '.join(ends)}) {signs[type(condition)]}"
@@ -125,10 +102,10 @@ def _certain(condition: Any, wide: Container[str]) -> str:
 
 
 def enclose(
-    form: Expr,
-    steepness: Expr,
+    form: sp.Expr,
+    steepness: sp.Expr,
     known: Boolean,
-    plain: Callable[[Basic, dict[Expr, Symbol]], Any],
+    plain: Callable[[sp.Basic, dict[sp.Expr, sp.Symbol]], Any],
     terms: Callable[[RowSum], tuple[str, Any]],
 ) -> str:
     """A function of the row and an interval of the unknown: the form, and its slope if it has one all over.
@@ -136,11 +113,11 @@ def enclose(
     `plain`: puts what is printed for them in the place of cells, and the names that it gives them in that of
     sums. `terms`: of a sum, the axis and its terms, printed as those of the row ``q``.
     """
-    found: dict[Expr, Symbol] = {}
+    found: dict[sp.Expr, sp.Symbol] = {}
     bodies = [plain(each, found) for each in (form, steepness)]
     wide = {"u"}
     condition = plain(known, found)
-    by_axis: dict[str, list[tuple[Symbol, Any]]] = {}
+    by_axis: dict[str, list[tuple[sp.Symbol, Any]]] = {}
     for total, name in found.items():
         axis, body = terms(total)
         by_axis.setdefault(axis, []).append((name, body))
@@ -177,7 +154,7 @@ def needed(program: str) -> str:
 
 def _common(bodies: Sequence[Any], prefix: str, wide: set[str]) -> tuple[list[str], list[Ends]]:
     """Statements for what expressions have in common, and the expressions; `wide` gets the new names."""
-    common, reduced = cse(list(bodies), symbols=numbered_symbols(prefix), order="none", list=True)
+    common, reduced = sp.cse(list(bodies), symbols=sp.numbered_symbols(prefix), order="none", list=True)
     lines = []
     for name, value in common:
         low, high = interval(value, wide)

@@ -23,30 +23,7 @@ from dataclasses import dataclass, replace
 from functools import partial, reduce
 from typing import Any
 
-from sympy import (
-    Abs,
-    Add,
-    Derivative,
-    Expr,
-    Ge,
-    Heaviside,
-    Integer,
-    Le,
-    Max,
-    Min,
-    Mul,
-    Piecewise,
-    Poly,
-    PolynomialError,
-    Pow,
-    S,
-    Subs,
-    Symbol,
-    exp,
-    log,
-    numer,
-    together,
-)
+import sympy as sp
 from sympy.core.function import ArgumentIndexError
 
 from ...derivations.differentiated import beside_corners, differentiated
@@ -59,7 +36,7 @@ from .slopes import NodeDerivatives, Slope, unknown_of
 
 PASSES = 20
 """How many passes of a loop are followed: each leaves a small share of what the last one did."""
-_NO_FUNCTIONS = (Derivative, Subs, Heaviside)
+_NO_FUNCTIONS = (sp.Derivative, sp.Subs, sp.Heaviside)
 
 
 @dataclass(frozen=True)
@@ -94,7 +71,7 @@ class _Making:
         self.own, self.axes = plan.own, plan.axes
         self.nodes: list[Node] = []
         self.again: dict[str, str] = {}
-        self.sums: dict[tuple[str, Axis, Expr], Symbol] = {}
+        self.sums: dict[tuple[str, Axis, sp.Expr], sp.Symbol] = {}
 
     def node(self, node: Node) -> Iterator[NodeDerivatives]:
         """A node, after the sums of its equation if it is a root."""
@@ -140,7 +117,7 @@ class _Making:
                 if node.word == "sum"
                 else _size(node.symbol)
                 if node.word == "median"
-                else Integer(0)
+                else sp.Integer(0)
             ),
             self.slopes(terms),
             node,
@@ -149,8 +126,8 @@ class _Making:
     def local(
         self,
         column: Column,
-        own: Callable[[], Expr],
-        slopes: dict[Symbol, Expr],
+        own: Callable[[], sp.Expr],
+        slopes: dict[sp.Symbol, sp.Expr],
         total: Total | None = None,
     ) -> NodeDerivatives:
         """A node, and the parts of its numbers; its own rounding only if it is asked for."""
@@ -167,40 +144,40 @@ class _Making:
             name, rows, summed, column.name, held, found, "" if total is None else total.word
         )
 
-    def slope(self, by: Symbol, value: str) -> Slope:
+    def slope(self, by: sp.Symbol, value: str) -> Slope:
         """The part that holds the derivative by what a symbol stands for."""
         leaf = self.leaves[by]
         if leaf.kind == "total":
             return Slope(by.name, leaf.axis and leaf.axis.name, None, value)
         return Slope(leaf.name, leaf.axis and leaf.axis.name, leaf.index, value)
 
-    def slopes(self, expression: Expr) -> dict[Symbol, Expr]:
+    def slopes(self, expression: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
         """The derivatives of an expression by what it names."""
         return {by: differentiated(expression, by) for by in self.named_in(expression)}
 
-    def named_in(self, *expressions: Expr) -> list[Symbol]:
+    def named_in(self, *expressions: sp.Expr) -> list[sp.Symbol]:
         """The cells and totals that expressions name, sorted by name; all else is exact."""
         free = set().union(*(expression.free_symbols for expression in expressions))
         named = (s for s in free if s in self.leaves and self.leaves[s].kind in ("cells", "total"))
         return sorted(named, key=str)
 
-    def part(self, wanted: str, column: Column, axis: Axis | None, expression: Expr) -> str:
+    def part(self, wanted: str, column: Column, axis: Axis | None, expression: sp.Expr) -> str:
         """A new part; its name."""
         # What jumps has no derivative that could be printed; the slope of a corner has one beside it.
         expression = beside_corners(expression)
-        value = S.NaN if expression.has(*_NO_FUNCTIONS) else expression
+        value = sp.S.NaN if expression.has(*_NO_FUNCTIONS) else expression
         symbol = self.symbol(wanted, Leaf("part", wanted, axis))
         self.nodes.append(Part(column, symbol, axis, value))
         return str(symbol.name)
 
-    def symbol(self, wanted: str, leaf: Leaf | None) -> Symbol:
+    def symbol(self, wanted: str, leaf: Leaf | None) -> sp.Symbol:
         """A new symbol; without a leaf, whoever asks says what it stands for."""
-        found = Symbol(free_name(wanted, self.taken), real=True)
+        found = sp.Symbol(free_name(wanted, self.taken), real=True)
         if leaf is not None:
             self.leaves[found] = leaf
         return found
 
-    def summed(self, column: Column, terms: Expr, over: Axis) -> Expr:
+    def summed(self, column: Column, terms: sp.Expr, over: Axis) -> sp.Expr:
         """The sum of terms over the rows that the sums of a column keep."""
         if terms == 0:
             return terms
@@ -219,7 +196,7 @@ class _RootMaking:
     def __init__(self, making: _Making, node: RootNode) -> None:
         self.making, self.root, self.column = making, node, node.column
         self.unknown = node.unknown
-        self.moving: dict[Symbol, tuple[Axis, Expr]] = {}
+        self.moving: dict[sp.Symbol, tuple[Axis, sp.Expr]] = {}
 
     def locals(self) -> Iterator[NodeDerivatives]:
         making = self.making
@@ -247,12 +224,12 @@ class _RootMaking:
             {by: slope.xreplace({self.unknown: here}) for by, slope in slopes.items()},
         )
 
-    def of_sum(self, terms: Expr, over: Axis, here: Expr) -> Expr:
+    def of_sum(self, terms: sp.Expr, over: Axis, here: sp.Expr) -> sp.Expr:
         """The rounding of a sum of the equation."""
         own = (_size(terms) + rounding(terms)).xreplace({self.unknown: here})
         return self.making.summed(self.column, own, over)
 
-    def names_in(self, *expressions: Expr) -> list[Symbol]:
+    def names_in(self, *expressions: sp.Expr) -> list[sp.Symbol]:
         """What expressions name besides the unknown, which may be called as its column is."""
         return [symbol for symbol in self.making.named_in(*expressions) if symbol != self.unknown]
 
@@ -273,23 +250,23 @@ class _RootMaking:
         self.moving[symbol] = key
         return symbol
 
-    def here(self) -> Expr:
+    def here(self) -> sp.Expr:
         """The unknown in terms of the cell; where that is no line, it is sought once more."""
         own = self.making.own[self.column.name]
         if self.moving and self.column.axis is not None:
-            return S.NaN  # a sum cannot name a row of the cell; each row would have a sum of its own
+            return sp.S.NaN  # a sum cannot name a row of the cell; each row would have a sum of its own
         value = self.root.value
         if value == self.unknown:
             return own
-        cell = Symbol("own", real=True)
+        cell = sp.Symbol("own", real=True)
         try:
-            slope, rest = Poly(numer(together(value - cell)), self.unknown).all_coeffs()
-        except (PolynomialError, ValueError):
+            slope, rest = sp.Poly(sp.numer(sp.together(value - cell)), self.unknown).all_coeffs()
+        except (sp.PolynomialError, ValueError):
             return self.again()
-        found: Expr = (-rest / slope).xreplace({cell: own})
+        found: sp.Expr = (-rest / slope).xreplace({cell: own})
         return found
 
-    def again(self) -> Symbol:
+    def again(self) -> sp.Symbol:
         """The unknown as a root of its own."""
         making, column = self.making, self.column
         symbol = making.symbol(f"{column.name}_unknown", None)
@@ -299,7 +276,7 @@ class _RootMaking:
         making.nodes.append(replace(self.root, column=again, value=self.unknown, requires=()))
         return symbol
 
-    def by_unknown(self, expression: Expr, here: Expr) -> Expr:
+    def by_unknown(self, expression: sp.Expr, here: sp.Expr) -> sp.Expr:
         """The derivative by the unknown, sums included."""
         found = differentiated(expression, self.unknown)
         for symbol, (over, terms) in list(self.moving.items()):
@@ -311,70 +288,70 @@ class _RootMaking:
 
 def _chosen(expression: Any) -> Any:
     """Larger, smaller and absolute values written as choices."""
-    if not expression.args or not expression.has(Max, Min, Abs):
+    if not expression.args or not expression.has(sp.Max, sp.Min, sp.Abs):
         return expression
     parts = [_chosen(argument) for argument in expression.args]
-    if isinstance(expression, (Max, Min)):
-        order = Ge if isinstance(expression, Max) else Le
-        return reduce(lambda a, b: Piecewise((a, order(a, b)), (b, True)), parts)
-    if isinstance(expression, Abs):
-        return Piecewise((parts[0], parts[0] >= 0), (-parts[0], True))
+    if isinstance(expression, (sp.Max, sp.Min)):
+        order = sp.Ge if isinstance(expression, sp.Max) else sp.Le
+        return reduce(lambda a, b: sp.Piecewise((a, order(a, b)), (b, True)), parts)
+    if isinstance(expression, sp.Abs):
+        return sp.Piecewise((parts[0], parts[0] >= 0), (-parts[0], True))
     return expression.func(*parts)
 
 
 # --- rounding ---------------------------------------------------------------------------------------------
 
 
-def rounding(expression: Expr) -> Expr:
+def rounding(expression: sp.Expr) -> sp.Expr:
     """What the operations of an expression round, in units of eps: what it names is exact, results are not.
 
     `expression`: in plain symbols.
     """
     if expression.is_Symbol:
-        return Integer(0)
+        return sp.Integer(0)
     if expression.is_Number or not expression.args:
         exact = expression.is_Rational and bin(expression.q).count("1") == 1
-        return Integer(0) if exact else _size(expression)
-    if isinstance(expression, Piecewise):
-        return Piecewise(*((rounding(value), condition) for value, condition in expression.args))
-    if isinstance(expression, Add):
-        return Add(*map(_size, expression.args), *map(rounding, expression.args))
-    if isinstance(expression, Mul):
+        return sp.Integer(0) if exact else _size(expression)
+    if isinstance(expression, sp.Piecewise):
+        return sp.Piecewise(*((rounding(value), condition) for value, condition in expression.args))
+    if isinstance(expression, sp.Add):
+        return sp.Add(*map(_size, expression.args), *map(rounding, expression.args))
+    if isinstance(expression, sp.Mul):
         return _of_product(expression)
-    if isinstance(expression, Pow):
+    if isinstance(expression, sp.Pow):
         base, exponent = expression.args
         inside = _size(exponent * base ** (exponent - 1)) * rounding(base)
         if not exponent.is_number:
-            inside += _size(expression * log(base)) * rounding(exponent)
+            inside += _size(expression * sp.log(base)) * rounding(exponent)
         return _size(expression) + inside
     inner = [(n, rounding(argument)) for n, argument in enumerate(expression.args, start=1)]
     try:
-        return Add(_size(expression), *(_size(expression.fdiff(n)) * each for n, each in inner if each))
+        return sp.Add(_size(expression), *(_size(expression.fdiff(n)) * each for n, each in inner if each))
     except ArgumentIndexError:
-        return S.NaN  # a function that sympy cannot differentiate
+        return sp.S.NaN  # a function that sympy cannot differentiate
 
 
-def _of_product(product: Expr) -> Expr:
+def _of_product(product: sp.Expr) -> sp.Expr:
     """A product: a sign rounds nothing, and a quotient is rounded once."""
     factors = [factor for factor in product.args if factor != -1]
-    found = _size(product) if len(factors) > 1 else Integer(0)
+    found = _size(product) if len(factors) > 1 else sp.Integer(0)
     for factor in factors:
         inside = rounding(factor)
-        if isinstance(factor, Pow) and factor.exp == -1 and len(factors) > 1:
+        if isinstance(factor, sp.Pow) and factor.exp == -1 and len(factors) > 1:
             inside = _size(factor) ** 2 * rounding(factor.base)
         if inside != 0:
             found += _size(product / factor) * inside
     return found
 
 
-def _size(expression: Expr) -> Expr:
+def _size(expression: sp.Expr) -> sp.Expr:
     """The absolute value, without asking sympy for the sign of long expressions."""
     if expression.is_Number or expression.is_Symbol:
-        return Abs(expression)
-    if isinstance(expression, Mul):
-        return Mul(*map(_size, expression.args))
-    if isinstance(expression, exp) or (isinstance(expression, Pow) and expression.base.is_positive):
+        return sp.Abs(expression)
+    if isinstance(expression, sp.Mul):
+        return sp.Mul(*map(_size, expression.args))
+    if isinstance(expression, sp.exp) or (isinstance(expression, sp.Pow) and expression.base.is_positive):
         return expression
-    if isinstance(expression, Pow) and expression.exp.is_Integer:
+    if isinstance(expression, sp.Pow) and expression.exp.is_Integer:
         return _size(expression.base) ** expression.exp
-    return Abs(expression, evaluate=False)
+    return sp.Abs(expression, evaluate=False)

@@ -11,40 +11,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
-from sympy import (
-    Abs,
-    Add,
-    And,
-    Dummy,
-    Eq,
-    Expr,
-    Integer,
-    Max,
-    Min,
-    Mul,
-    Ne,
-    Not,
-    Or,
-    Piecewise,
-    Pow,
-    S,
-    Sum,
-    Symbol,
-    acos,
-    asin,
-    atan,
-    ceiling,
-    cos,
-    cosh,
-    exp,
-    floor,
-    log,
-    sign,
-    sin,
-    sinh,
-    tan,
-    tanh,
-)
+import sympy as sp
 from sympy.core.relational import Relational
 from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.logic.boolalg import Boolean
@@ -55,26 +22,26 @@ from ..sheet import Sheet
 from .nodes import Leaf, RowOrder, RowSum
 
 _EVERYWHERE = (
-    Abs, Add, And, ExprCondPair, Max, Min, Mul, Not, Or, Relational,
-    atan, ceiling, cos, cosh, exp, floor, sign, sin, sinh, tanh,
+    sp.Abs, sp.Add, sp.And, ExprCondPair, sp.Max, sp.Min, sp.Mul, sp.Not, sp.Or, Relational,
+    sp.atan, sp.ceiling, sp.cos, sp.cosh, sp.exp, sp.floor, sp.sign, sp.sin, sp.sinh, sp.tanh,
 )  # fmt: skip
 """What has a value wherever its arguments have."""
 
 
-def typed(sheet: Sheet, expression: Expr) -> Expr:
+def typed(sheet: Sheet, expression: sp.Expr) -> sp.Expr:
     """The expression in cells of which is assumed what they may be: a given one that is allowed to be 0 is.
 
     `expression`: a formula of the sheet. What is made of it names the same cells.
     """
-    own = {sheet[name].symbol: Symbol(name, **assumed(bounds)) for name, bounds in sheet.bounds.items()}
-    found: Expr = expression.xreplace(own)
+    own = {sheet[name].symbol: sp.Symbol(name, **assumed(bounds)) for name, bounds in sheet.bounds.items()}
+    found: sp.Expr = expression.xreplace(own)
     return found
 
 
-def typed_symbols(sheet: Sheet, leaves: Mapping[Symbol, Leaf]) -> dict[Symbol, Symbol]:
+def typed_symbols(sheet: Sheet, leaves: Mapping[sp.Symbol, Leaf]) -> dict[sp.Symbol, sp.Symbol]:
     """For the cells of given columns, symbols of which is assumed what they may be."""
     return {
-        symbol: Symbol(symbol.name, **assumed(sheet.bounds[leaf.name]))
+        symbol: sp.Symbol(symbol.name, **assumed(sheet.bounds[leaf.name]))
         for symbol, leaf in leaves.items()
         if leaf.kind == "cells" and leaf.name in sheet.bounds
     }
@@ -112,63 +79,64 @@ def defined(expression: Any) -> Boolean:
 
     Examples
     --------
-    >>> from sympy import symbols
-    >>> x, y = symbols("x y", positive=True)
+    >>> x, y = sp.symbols("x y", positive=True)
     >>> defined(x * y**-2.5 / (x - y)), defined((x - y) ** -2.5)
     (Ne(x - y, 0), x - y > 0)
-    >>> defined(log(x / y))
+    >>> defined(sp.log(x / y))
     True
     """
     if not expression.args or expression.is_Atom or expression.is_Indexed:
-        return S.true
+        return sp.S.true
     if isinstance(expression, REDUCTIONS):
-        outside = Piecewise((Integer(0), defined(expression.function)), (Integer(1), True))
-        return S.true if outside == 0 else Eq(Sum(outside, *expression.limits), 0)
+        outside = sp.Piecewise((sp.Integer(0), defined(expression.function)), (sp.Integer(1), True))
+        return sp.S.true if outside == 0 else sp.Eq(sp.Sum(outside, *expression.limits), 0)
     if isinstance(expression, (RowSum, RowOrder)):
-        outside = Piecewise((Integer(0), defined(expression.args[0])), (Integer(1), True))
-        return S.true if outside == 0 else Eq(RowSum(outside, expression.args[1]), 0)
-    if isinstance(expression, Piecewise):
-        chosen = [Or(Not(condition), defined(value)) for value, condition in expression.args]
+        outside = sp.Piecewise((sp.Integer(0), defined(expression.args[0])), (sp.Integer(1), True))
+        return sp.S.true if outside == 0 else sp.Eq(RowSum(outside, expression.args[1]), 0)
+    if isinstance(expression, sp.Piecewise):
+        chosen = [sp.Or(sp.Not(condition), defined(value)) for value, condition in expression.args]
         conditions = [condition for _, condition in expression.args]
-        return And(*chosen, *map(defined, conditions), Or(*conditions))
-    return And(_itself(expression), *map(defined, expression.args))
+        return sp.And(*chosen, *map(defined, conditions), sp.Or(*conditions))
+    return sp.And(_itself(expression), *map(defined, expression.args))
 
 
 def _itself(expression: Any) -> Boolean:
     """Where an operation has a value if its arguments have."""
-    if isinstance(expression, Pow):
+    if isinstance(expression, sp.Pow):
         base, exponent = expression.args
         if exponent.is_negative and exponent.is_noninteger:
             return base > 0
-        whole = S.true if exponent.is_integer else base >= 0
+        whole = sp.S.true if exponent.is_integer else base >= 0
         if not exponent.is_number:
-            whole = Or(whole, Eq(exponent, floor(exponent)))
-        some = S.true if exponent.is_nonnegative else Ne(base, 0)
-        return And(whole, some if exponent.is_negative else Or(some, exponent > 0))
-    if isinstance(expression, log):
+            whole = sp.Or(whole, sp.Eq(exponent, sp.floor(exponent)))
+        some = sp.S.true if exponent.is_nonnegative else sp.Ne(base, 0)
+        return sp.And(whole, some if exponent.is_negative else sp.Or(some, exponent > 0))
+    if isinstance(expression, sp.log):
         return expression.args[0] > 0
-    if isinstance(expression, tan):
-        return Ne(cos(expression.args[0]), 0)
-    if isinstance(expression, (acos, asin)):
-        return And(expression.args[0] >= -1, expression.args[0] <= 1)
-    return S.true if isinstance(expression, _EVERYWHERE) else S.false
+    if isinstance(expression, sp.tan):
+        return sp.Ne(sp.cos(expression.args[0]), 0)
+    if isinstance(expression, (sp.acos, sp.asin)):
+        return sp.And(expression.args[0] >= -1, expression.args[0] <= 1)
+    return sp.S.true if isinstance(expression, _EVERYWHERE) else sp.S.false
 
 
-def is_positive(expression: Expr) -> bool:
+def is_positive(expression: sp.Expr) -> bool:
     """Whether an expression is positive by what is assumed of its cells; a sum of such has some terms.
 
     Examples
     --------
-    >>> F, n = Symbol("F", positive=True), Symbol("n", positive=True)
-    >>> is_positive(RowSum(F, Symbol("points")) / n), is_positive(F - 1)
+    >>> F, n = sp.Symbol("F", positive=True), sp.Symbol("n", positive=True)
+    >>> is_positive(RowSum(F, sp.Symbol("points")) / n), is_positive(F - 1)
     (True, False)
     """
-    known = {total: Dummy(positive=True) for total in expression.atoms(RowSum) if is_positive(total.args[0])}
+    known = {
+        total: sp.Dummy(positive=True) for total in expression.atoms(RowSum) if is_positive(total.args[0])
+    }
     return bool(expression.xreplace(known).is_positive)
 
 
 @lru_cache(maxsize=4096)
-def positive(expression: Expr) -> Boolean:
+def positive(expression: sp.Expr) -> Boolean:
     """Say where an expression is positive, by the signs of its factors: no double may hold their product.
 
     Parameters
@@ -183,18 +151,17 @@ def positive(expression: Expr) -> Boolean:
 
     Examples
     --------
-    >>> from sympy import symbols
-    >>> x, y, e = Symbol("x", positive=True), Symbol("y", positive=True), Symbol("e", nonnegative=True)
+    >>> x, y, e = *sp.symbols("x y", positive=True), sp.Symbol("e", nonnegative=True)
     >>> positive(x**2 / y), positive(x - y)
     (True, False)
     >>> positive(e**2 * x / (x - y))
     sign(e)**2*sign(x - y) > 0
     """
-    factors = [factor for factor in Mul.make_args(expression) if not is_positive(factor)]
+    factors = [factor for factor in sp.Mul.make_args(expression) if not is_positive(factor)]
     if not factors:
-        return S.true
+        return sp.S.true
     signs = [
-        sign(base) ** (2 if power.is_even else 1)
+        sp.sign(base) ** (2 if power.is_even else 1)
         for base, power in (factor.as_base_exp() for factor in factors)
     ]
-    return S.false if factors == [expression] and not expression.is_Pow else Mul(*signs) > 0
+    return sp.S.false if factors == [expression] and not expression.is_Pow else sp.Mul(*signs) > 0
