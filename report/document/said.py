@@ -21,38 +21,15 @@ from ..result.statements import statements
 from ..result.uncertain import draws_of
 from ..result.verdict import NOT_CHECKABLE, UNREACHABLE
 from ..workbook import FigureSpec
-from . import cards
+from . import cards, tree
 from .material import Material
 from .parts import Item, SourceGroup
 from .put_in import put_in
 from .refereed import GOOD
 from .tables import Tables
-from .tree import (
-    Blocks,
-    Claim,
-    Code,
-    Count,
-    Display,
-    Figure,
-    Headline,
-    HeadlineItem,
-    Inlines,
-    Items,
-    Link,
-    Math,
-    Note,
-    Number,
-    Paragraph,
-    Refer,
-    Strong,
-    Table,
-    Value,
-    in_unit,
-    joined,
-)  # fmt: skip
 from .written import gone
 
-Answer = Inlines | Blocks | bool
+Answer = tree.Inlines | tree.Blocks | bool
 
 
 class UnknownName(LookupError):
@@ -77,14 +54,14 @@ class Said:
         self.rich, self.sentence = material.sentences.rich, material.sentences.sentence
         self.referee, self.tables = material.report.referee, Tables(material)
         self.roles: Mapping[str, Role] = {
-            "cell": Role(lambda name: (Value(item),) if (item := self._item(name)).ok else ()),
+            "cell": Role(lambda name: (tree.Value(item),) if (item := self._item(name)).ok else ()),
             "count": Role(self._count),
-            "eq": Role(lambda label: (Refer(self._label(label)),), self._numbered),
+            "eq": Role(lambda label: (tree.Refer(self._label(label)),), self._numbered),
             "fig": Role(lambda name: _links("figure", self._spec(name)), self._figure),
             "fit": Role(lambda name: self.told(self.fits().get(name, ""))),
             "inside": Role(self._inside),
             "lacking": Role(lambda names: self._lacking(names.split())),
-            "math": Role(lambda latex: (Math(latex),)),
+            "math": Role(lambda latex: (tree.Math(latex),)),
             "published": Role(self._printed),
             "say": Role(lambda name: SAID[_known("sentence", name, SAID)](self)),
             "sym": Role(lambda name: (self.material.sentences.symbol(name),)),
@@ -106,34 +83,34 @@ class Said:
     def _item(self, name: str) -> Item:
         return self.material.item(self._column(name))
 
-    def _lacking(self, names: Sequence[str]) -> Inlines:
+    def _lacking(self, names: Sequence[str]) -> tree.Inlines:
         """That cells have no value, and why the first has none."""
-        cells = joined(((self.material.sentences.symbol(name),) for name in names), ", ", " and ")
+        cells = tree.joined(((self.material.sentences.symbol(name),) for name in names), ", ", " and ")
         why = self.rich(self._item(names[0]).origin.why)
         return *cells, f" {'has' if len(names) == 1 else 'have'} no value: ", *why, "."
 
     def _label(self, label: str) -> str:
         return _known("equation", label, self.material.identifiers)
 
-    def _count(self, what: str) -> Inlines:
+    def _count(self, what: str) -> tree.Inlines:
         """``tests``: how many there are; ``alpha_mean pairs``: over how many of them a column sums."""
         values = self.report.values
         *column, axis = what.split()
         _known("axis", axis, values.layouts)
         if not column:
-            return (Count(str(values.layouts[axis].size), "count", axis),)
+            return (tree.Count(str(values.layouts[axis].size), "count", axis),)
         name = self._column(column[0])
-        return (Count(str(values.rows_summed(name, axis)), "count", axis, name),)
+        return (tree.Count(str(values.rows_summed(name, axis)), "count", axis, name),)
 
-    def _inside(self, name: str) -> Inlines:
+    def _inside(self, name: str) -> tree.Inlines:
         limited = self.report.marks.limited(self._column(name))
-        return (Count(limited.inside, "inside", limited.margin.column.name),)
+        return (tree.Count(limited.inside, "inside", limited.margin.column.name),)
 
-    def _probable(self, p: float | None) -> Inlines:
+    def _probable(self, p: float | None) -> tree.Inlines:
         return () if p is None else self.rich(probability(p))
 
-    def _followed(self, kind: str, what: str, p: float | None) -> Inlines:
-        return (Count(text, kind, what),) if (text := self._probable(p)) else ()
+    def _followed(self, kind: str, what: str, p: float | None) -> tree.Inlines:
+        return (tree.Count(text, kind, what),) if (text := self._probable(p)) else ()
 
     def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
         """How likely such a sum of squares is; None without one, and if nothing or no chance is left over."""
@@ -152,55 +129,55 @@ class Said:
         chance = largest(most, len(known), len(self.report.inputs.only.left_out))
         return (index_text(values.labels(column)[row]), chance) if chance < SIGNIFICANT else None
 
-    def _test(self, name: str) -> Inlines:
+    def _test(self, name: str) -> tree.Inlines:
         found = self._farthest(name)
         return self.sentence(found[0]) if found else ()
 
-    def _chance(self, name: str) -> Inlines:
+    def _chance(self, name: str) -> tree.Inlines:
         found = self._farthest(name)
         return self._probable(found[1]) if found else ()
 
-    def _printed(self, cell: str) -> Inlines:
+    def _printed(self, cell: str) -> tree.Inlines:
         self._column(cell)
         for one in self.report.comparisons:
             if (one.published.cell, one.published.index) == (cell, ()):
                 printed = one.published.printed
-                return Number(None, printed.text), *in_unit(printed.unit)
+                return tree.Number(None, printed.text), *tree.in_unit(printed.unit)
         return ()
 
-    def _numbered(self, label: str) -> Blocks:
-        return (Display(self.report.ledger[self._label(label)], numbered=True),)
+    def _numbered(self, label: str) -> tree.Blocks:
+        return (tree.Display(self.report.ledger[self._label(label)], numbered=True),)
 
-    def _table(self, name: str) -> tuple[Table, ...]:
+    def _table(self, name: str) -> tuple[tree.Table, ...]:
         return (self.tables.data[name],) if name in self.tables.data else ()
 
     def _spec(self, name: str) -> tuple[FigureSpec, ...]:
         return tuple(one for one in self.material.figures if one.name == name and name in self.drawn)
 
-    def _figure(self, name: str) -> tuple[Figure, ...]:
-        return tuple(Figure(spec, self.rich(spec.caption)) for spec in self._spec(name))
+    def _figure(self, name: str) -> tuple[tree.Figure, ...]:
+        return tuple(tree.Figure(spec, self.rich(spec.caption)) for spec in self._spec(name))
 
     # --- sentences
 
-    def told(self, sentence: str) -> Inlines:
+    def told(self, sentence: str) -> tree.Inlines:
         """A sentence with its full stop; nothing of nothing."""
         return (*self.sentence(sentence), ".") if sentence else ()
 
-    def listed(self, sentences: Iterable[str]) -> Blocks:
+    def listed(self, sentences: Iterable[str]) -> tree.Blocks:
         """A list of sentences."""
         return _listed(map(self.told, sentences))
 
-    def headline(self) -> Blocks:
+    def headline(self) -> tree.Blocks:
         """The results, and what is decided on limits."""
         names = [name for name in self.report.workbook.headline if name in self.report.sheet]
         items = [item for name in names for item in self.material.items(name)[1]]
-        results = (Headline(tuple(map(self._result, items))),) if items else ()
+        results = (tree.Headline(tuple(map(self._result, items))),) if items else ()
         decided = self.report.uncertain().conformities if self.report.inputs.limits else ()
         told = tuple(self.rich(decision(self.report, found)) for found in decided)
         told += tuple(self.rich(f"{undecided(each)}.") for each in self.report.inputs.undecided)
-        return (*results, *((Items(told, "decided"),) if told else ()))
+        return (*results, *((tree.Items(told, "decided"),) if told else ()))
 
-    def _result(self, item: Item) -> HeadlineItem:
+    def _result(self, item: Item) -> tree.HeadlineItem:
         name = item.cell.name
         column, values = self.report.sheet[name], self.report.values
         left_out = values.left_out(name, values.row(column, item.cell.label))
@@ -209,46 +186,47 @@ class Said:
         marks = (count for count in self.report.marks.behind(column) if count.number)
         word = self.report.words(column).get(item.cell.label, "") if column.axis else ""
         meaning = (*self.rich(item.head.meaning), f", {word}" if word else "")
-        return HeadlineItem(
-            Math(item.head.latex),
+        return tree.HeadlineItem(
+            tree.Math(item.head.latex),
             meaning,
             item,
             (*(rows if item.ok else ()), *(count.said for count in marks)),
             *self._sure(item.cell),
         )
 
-    def _sure(self, cell: Cell) -> tuple[Inlines, Inlines]:
+    def _sure(self, cell: Cell) -> tuple[tree.Inlines, tree.Inlines]:
         """The expanded uncertainty of a result, where one is known, and whether it may not hold."""
         budgets = self.report.uncertain().budgets
         budget = next((b for b in budgets if (b.name, b.label) == (cell.name, cell.label)), None)
         if budget is None:
             return (), ()
-        told: Inlines = ()
+        told: tree.Inlines = ()
         if budget.u > 0 and math.isfinite(budget.factor):
             _, expanded = self.report.stated(cell.name, budget.value, budget.expanded)
             factor = f" (k\u00a0=\u00a0{rounded(budget.factor, 3).text})"
-            told = "U\u00a0=\u00a0", Number(expanded), *in_unit(self.report.shown[cell.name].unit), factor
-        instead = ("; use ", Code(draws_of(budget.cell))) if budget.asks_for_draws else ()
+            unit = tree.in_unit(self.report.shown[cell.name].unit)
+            told = "U\u00a0=\u00a0", tree.Number(expanded), *unit, factor
+        instead = ("; use ", tree.Code(draws_of(budget.cell))) if budget.asks_for_draws else ()
         return told, ((budget.doubt, *instead) if budget.doubt else ())
 
-    def oddities(self) -> Blocks:
+    def oddities(self) -> tree.Blocks:
         """What there is to tell of the data themselves."""
         return tuple(
-            Note((Strong((check.word.capitalize(),)), ": ", *self.rich(check.message), "."))
+            tree.Note((tree.Strong((check.word.capitalize(),)), ": ", *self.rich(check.message), "."))
             for check in self.material.oddities
         )
 
-    def left_out(self) -> Inlines:
+    def left_out(self) -> tree.Inlines:
         """How many rows of the measurements are left out."""
         left_out = [*self.report.inputs.left_out]
-        return (Count(str(len(left_out)), "count", "left out"),) if left_out else ()
+        return (tree.Count(str(len(left_out)), "count", "left out"),) if left_out else ()
 
-    def data(self) -> Blocks:
+    def data(self) -> tree.Blocks:
         """All tables, and all figures of the workbook."""
         figures = (one for spec in self.report.workbook.figures for one in self._figure(spec.name))
         return (*self.tables.data.values(), *figures)
 
-    def tally(self) -> Inlines:
+    def tally(self) -> tree.Inlines:
         """How many published values come out."""
         found = self.report.comparisons
         if not found:
@@ -259,31 +237,33 @@ class Said:
         said = f"Of {len(found)} published value{'s' * (len(found) > 1)}, {_come(same)}"
         said += f" and {differing} differ{'s' * (differing == 1)}" if differing else ""
         said += f"; {missing} could not be compared" if missing else ""
-        link = Link("section", "published", ("Each is shown beside its recomputation.",))
+        link = tree.Link("section", "published", ("Each is shown beside its recomputation.",))
         odd = sum(not one.as_expected for one in found)
-        odd_ones = Strong((f"{odd} of these findings {'was' if odd == 1 else 'were'} not expected.",))
+        odd_ones = tree.Strong((f"{odd} of these findings {'was' if odd == 1 else 'were'} not expected.",))
         return (f"{said}. ", link, *((" ", odd_ones) if odd else ()))
 
-    def group(self, group: SourceGroup) -> Inlines:
+    def group(self, group: SourceGroup) -> tree.Inlines:
         """How much of one place of the source comes out."""
         title = (", ", *self.rich(group.title)) if group.title else ()
-        off: Inlines = ()
+        off: tree.Inlines = ()
         if (far := group.furthest) is not None and group.same < len(group.pairs):
             again, of = far.comparison.again, f" of {far.row}" if far.row else ""
             beside = f" units, {again} against the published {far.printed.text}{of}"
-            off = "; the furthest is off by ", Number(far.distance, signed=True), beside
+            off = "; the furthest is off by ", tree.Number(far.distance, signed=True), beside
         come = f": of {len(group.pairs)} value{'s' * (len(group.pairs) > 1)} {_come(group.same)}"
-        return Strong((group.source,)), *title, come, *off, "."
+        return tree.Strong((group.source,)), *title, come, *off, "."
 
     # --- the referee
 
-    def free(self) -> Inlines:
+    def free(self) -> tree.Inlines:
         """What the publication does not print."""
         columns = (self.report.sheet[name] for name in self.referee.free if name in self.report.sheet)
         symbol = self.material.sentences.symbol
-        return joined((("the ", *self.rich(c.meaning), " ", symbol(c.name)) for c in columns), ", ", " and ")
+        return tree.joined(
+            (("the ", *self.rich(c.meaning), " ", symbol(c.name)) for c in columns), ", ", " and "
+        )
 
-    def verdict(self) -> Inlines:
+    def verdict(self) -> tree.Inlines:
         """Whether everything published can come out of one input."""
         if self.referee.joint is None:
             return ()
@@ -291,11 +271,11 @@ class Said:
         out = [value.pair for value in self.material.refereed if value.verdict == UNREACHABLE]
         if not out:
             return said
-        cells = ((Math(pair.head.latex), f" {pair.index}" if pair.index else "") for pair in out)
+        cells = ((tree.Math(pair.head.latex), f" {pair.index}" if pair.index else "") for pair in out)
         own = "itself" if len(out) == 1 else "themselves"
-        return *said, f" Out of reach by {own}: ", *joined(cells, ", ", " and "), "."
+        return *said, f" Out of reach by {own}: ", *tree.joined(cells, ", ", " and "), "."
 
-    def without(self) -> Inlines:
+    def without(self) -> tree.Inlines:
         """How many values have no interval, and why."""
         values = self.material.refereed
         number = sum(one.found.low is None and one.verdict != NOT_CHECKABLE for one in values)
@@ -305,9 +285,9 @@ class Said:
         said += f"and only together with the others can {they} be refuted."
         return (said,) if number else ()
 
-    def amended(self) -> Inlines:
+    def amended(self) -> tree.Inlines:
         """What comes out with the known misprints put right: what they are, then what comes out."""
-        return joined(map(self.told, words.amended(self.referee)), " ")
+        return tree.joined(map(self.told, words.amended(self.referee)), " ")
 
     def fits(self) -> dict[str, str]:
         """What is said of the published value of each average and fit, by its cell."""
@@ -319,17 +299,18 @@ class Said:
 
     # --- equations
 
-    def claim(self, equation: Equation) -> Claim:
+    def claim(self, equation: Equation) -> tree.Claim:
         """An equation with what is known of it."""
         material, ledger = self.material, self.report.ledger
         proof, derivation = material.proof(equation), ledger.derivation(equation)
         because = self.told(equation.because)
         if conditions := material.written(equation).conditions:
-            because += (" Holds where ", *joined(((Math(each),) for each in conditions), " and "), ".")
+            where = tree.joined([(tree.Math(each),) for each in conditions], " and ")
+            because += (" Holds where ", *where, ".")
         if proof and proof.remark:
             because += (" ", *self.told(proof.remark))
         steps = tuple(self._steps(derivation, proof)) if derivation else ()
-        return Claim(
+        return tree.Claim(
             equation,
             self.sentence(equation.title),
             material.status(equation),
@@ -339,36 +320,37 @@ class Said:
             steps,
         )
 
-    def _named(self, label: str, title: str) -> Inlines:
-        return (Refer(label),) if label in self.material.identifiers else self.rich(title)
+    def _named(self, label: str, title: str) -> tree.Inlines:
+        return (tree.Refer(label),) if label in self.material.identifiers else self.rich(title)
 
-    def _grounds(self, proof: Proof) -> Inlines:
+    def _grounds(self, proof: Proof) -> tree.Inlines:
         """What a claim finally rests on: numbers, and titles of what has none."""
-        grounds = joined(self._all_grounds(proof), "; ")
+        grounds = tree.joined(self._all_grounds(proof), "; ")
         return ("Rests on: ", *(grounds or (IDENTITY,)), ".")
 
-    def _all_grounds(self, proof: Proof) -> list[Inlines]:
+    def _all_grounds(self, proof: Proof) -> list[tree.Inlines]:
         return [self._named(label, label) for label in proof.rests_on]
 
-    def _steps(self, derivation: Derivation, proof: Proof | None) -> Iterator[Blocks]:
+    def _steps(self, derivation: Derivation, proof: Proof | None) -> Iterator[tree.Blocks]:
         shown: set[tuple[str, str]] = set()
         known = self._all_grounds(proof) if proof and proof.status.passes else []
         for number, step in enumerate(derivation.steps):
-            blocks: Blocks = (Paragraph(self.rich(step.says)),)
+            blocks: tree.Blocks = (tree.Paragraph(self.rich(step.says)),)
             if step.claim.label != derivation.claim.label:
-                blocks += (Display(step.claim),)
+                blocks += (tree.Display(step.claim),)
             for premise in step.premises:  # those without a number, the first time
                 if premise.label in self.material.identifiers or _name(premise) in shown:
                     continue
                 title, first = self.rich(premise.title), self._first_shown[self._shown_as(premise)]
                 if first != derivation.claim.label:
-                    blocks += (Paragraph(("Premise: ", *title, ", as in ", *self._named(first, first), ".")),)
+                    named = self._named(first, first)
+                    blocks += (tree.Paragraph(("Premise: ", *title, ", as in ", *named, ".")),)
                 else:
                     why = self.rich(premise.because)
-                    blocks += (Paragraph(("Premise: ", *title, " – ", *why, ":")), Display(premise))
+                    blocks += (tree.Paragraph(("Premise: ", *title, " – ", *why, ":")), tree.Display(premise))
             shown.add(_name(step.claim))
             evidence = ("Evidence: ", *self.rich(proof.steps[number].sentence), ".") if proof else ()
-            yield *blocks, Paragraph((*self._rests_on(step, known), *evidence), aside=True)
+            yield *blocks, tree.Paragraph((*self._rests_on(step, known), *evidence), aside=True)
 
     def _shown_as(self, premise: Equation) -> tuple[object, ...]:
         return *_name(premise), self.material.written(premise).speaks_of
@@ -383,24 +365,24 @@ class Said:
                     found.setdefault(self._shown_as(premise), entry.claim.label)
         return found
 
-    def _rests_on(self, step: Step, known: Sequence[Inlines]) -> Inlines:
+    def _rests_on(self, step: Step, known: Sequence[tree.Inlines]) -> tree.Inlines:
         """What a step rests on, unless the claim says the same of itself, and what it eliminates."""
         # two branches of one law are one equation
         each = list(dict.fromkeys(map(self._premise, step.premises)))
-        rests: Inlines = ("Rests on ", *joined(each, ", "), ". ") if each and each != known else ()
-        out = joined(((Math(each),) for each in gone(step, self.material.names)), ", ")
+        rests: tree.Inlines = ("Rests on ", *tree.joined(each, ", "), ". ") if each and each != known else ()
+        out = tree.joined(((tree.Math(each),) for each in gone(step, self.material.names)), ", ")
         return (*rests, *(("Eliminated: ", *out, ". ") if out else ()))
 
-    def _premise(self, equation: Equation) -> Inlines:
+    def _premise(self, equation: Equation) -> tree.Inlines:
         """What a step rests on: its number or its name, and of which test it speaks."""
         named = self._named(equation.label, equation.title)
         row = self.material.written(equation).speaks_of
-        return (*named, " for ", Math(row)) if row else named
+        return (*named, " for ", tree.Math(row)) if row else named
 
-    def versions(self) -> Blocks:
+    def versions(self) -> tree.Blocks:
         """What computed the report."""
         versions = self.report.versions.items()
-        return (Items(tuple((f"{name}\u00a0{number}",) for name, number in versions), "versions"),)
+        return (tree.Items(tuple((f"{name}\u00a0{number}",) for name, number in versions), "versions"),)
 
 
 SAID: dict[str, Callable[[Said], Answer]] = {
@@ -445,10 +427,10 @@ SAID: dict[str, Callable[[Said], Answer]] = {
     "sample": lambda s: tuple(engine.sample for engine in s.report.engines[:1] if engine.sample),
     "engines": lambda s: _listed(map(_agreement, s.report.engines)),
     "other_engines": lambda s: len(s.report.engines) > 1,
-    "files": lambda s: joined(((Code(name),) for name in s.report.inputs.files), ", "),
+    "files": lambda s: tree.joined(((tree.Code(name),) for name in s.report.inputs.files), ", "),
     "cards": lambda s: cards.blocks(s.report.cards()),
     "card_models": lambda s: any(not card.solved for card in s.report.cards().made),
-    "untold": lambda s: joined(((name,) for name in s.material.untold), " and "),
+    "untold": lambda s: tree.joined(((name,) for name in s.material.untold), " and "),
     "exactly": lambda s: s.report.exactly is not None,
     "versions": Said.versions,
 }
@@ -462,31 +444,31 @@ def _known(what: str, name: str, known: Collection[str]) -> str:
     return name
 
 
-def _links(kind: str, shown: Iterable[Table | FigureSpec]) -> Inlines:
-    return tuple(Link(kind, one.name, (f"{kind.capitalize()}\u00a0{one.number}",)) for one in shown)
+def _links(kind: str, shown: Iterable[tree.Table | FigureSpec]) -> tree.Inlines:
+    return tuple(tree.Link(kind, one.name, (f"{kind.capitalize()}\u00a0{one.number}",)) for one in shown)
 
 
 def _come(number: int) -> str:
     return f"{number or 'none'} {'come' if number > 1 else 'comes'} out as printed"
 
 
-def _listed(items: Iterable[Inlines]) -> Blocks:
+def _listed(items: Iterable[tree.Inlines]) -> tree.Blocks:
     listed = tuple(items)
-    return (Items(listed),) if listed else ()
+    return (tree.Items(listed),) if listed else ()
 
 
-def _agreement(found: Agreement) -> Inlines:
+def _agreement(found: Agreement) -> tree.Inlines:
     """What the judge found of an engine."""
-    said: Inlines
+    said: tree.Inlines
     if found.absent:
         said = (found.absent,)
     elif not found.cells:
         said = ("failed",)
     else:
-        where = (" in ", Code(found.units_where)) if found.units_where else ()
+        where = (" in ", tree.Code(found.units_where)) if found.units_where else ()
         said = (f"{found.counted}, the largest difference is {found.units:.2g}", *where)
-        said += ("; ", Strong((f"{len(found.findings)} findings",))) if found.findings else ()
-    return Strong((found.engine,)), f", {found.program}: " if found.program else ": ", *said, "."
+        said += ("; ", tree.Strong((f"{len(found.findings)} findings",))) if found.findings else ()
+    return tree.Strong((found.engine,)), f", {found.program}: " if found.program else ": ", *said, "."
 
 
 def _name(equation: Equation) -> tuple[str, str]:

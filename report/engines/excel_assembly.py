@@ -13,22 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from ...derivations.unit_text import ParsedUnit, UnitError, parse_open, parse_unit
-from ..cells.grid import (
-    CHECKED,
-    FIRST_ROW,
-    LONGEST,
-    MOST_RESULTS,
-    SCALARS,
-    SLOPES,
-    STEPS,
-    TOP,
-    CellBlock,
-    FilledDown,
-    Grouped,
-    Place,
-    as_issued,
-    checked,
-)
+from ..cells import grid
 from ..cells.layout import Layout
 from ..charts import MOST_DOTS
 from ..column import shown_as
@@ -60,8 +45,8 @@ class _Room:
     rows: int
     column: int = 0
 
-    def next(self, scale: Fraction = Fraction(1), zero: Fraction = Fraction(0)) -> Place:
-        place = Place(self.worksheet, FIRST_ROW, self.column, self.rows, scale, zero)
+    def next(self, scale: Fraction = Fraction(1), zero: Fraction = Fraction(0)) -> grid.Place:
+        place = grid.Place(self.worksheet, grid.FIRST_ROW, self.column, self.rows, scale, zero)
         self.column += 1
         return place
 
@@ -88,12 +73,12 @@ class Assembly:
         self.units, self.first, self.results = units, first, results
         self.names = worksheets
         self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
-        self.places: dict[str, Place] = {}
-        self.notes: dict[str, Place] = {}
+        self.places: dict[str, grid.Place] = {}
+        self.notes: dict[str, grid.Place] = {}
         self.thinned = thinned
-        self.worded, self.words = worded, dict[str, tuple[Place, ...]]()
-        self.groups: dict[str, tuple[Grouped, ...]] = {}
-        self.indices: dict[str, tuple[Place, ...]] = {}
+        self.worded, self.words = worded, dict[str, tuple[grid.Place, ...]]()
+        self.groups: dict[str, tuple[grid.Grouped, ...]] = {}
+        self.indices: dict[str, tuple[grid.Place, ...]] = {}
         self.plan = ordered(lowered(whole))
         roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
         self.unrolled = {
@@ -121,16 +106,16 @@ class Assembly:
             for name, each in self.unrolled.items()
         }
         self.places |= derived.put(lambda axis: self.rooms[axis].next(), steps)
-        named = {name: self.places[checked(name)] for name in self.whole.bounds}
+        named = {name: self.places[grid.checked(name)] for name in self.whole.bounds}
         places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
         formulas = Formulas(self.whole, self.plan, self.layouts, places)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         slopes = derived.told(formulas)
         blocks += derived.blocks
         for block in blocks:
-            if (longest := max((len(each.first) for each in block.filled), default=0)) > LONGEST:
+            if (longest := max((len(each.first) for each in block.filled), default=0)) > grid.LONGEST:
                 raise NotPrintable(f"{block.name} has a formula of {longest} characters, which no cell takes")
-        order = [SCALARS, *self.names.values(), STEPS, SLOPES]
+        order = [grid.SCALARS, *self.names.values(), grid.STEPS, grid.SLOPES]
         blocks.sort(
             key=lambda b: (
                 order.index(b.place.worksheet),
@@ -177,12 +162,12 @@ class Assembly:
                 if column.axis is not None and column.name in own:
                     self.put(column, own[column.name].name)
         for column in given:
-            self.put(column, checked(column.name))
+            self.put(column, grid.checked(column.name))
         for name, (leaf, axis) in sorted(self.carried.items()):
             self.places[name] = self.rooms[axis.name].next(
                 self.places[leaf.name].scale, self.places[leaf.name].zero
             )
-        row = TOP - 2
+        row = grid.TOP - 2
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
             if over is not None:
@@ -194,18 +179,20 @@ class Assembly:
             row = self.put_passes(loop, row)
         for column in self.asked:
             if column.axis is not None:
-                self.put(column, as_issued(column.name))
+                self.put(column, grid.as_issued(column.name))
             else:
-                self.places[as_issued(column.name)] = Place(STEPS, row := row + 1, 1, 1, *self.size(column))
+                self.places[grid.as_issued(column.name)] = grid.Place(
+                    grid.STEPS, row := row + 1, 1, 1, *self.size(column)
+                )
 
-    def put_group(self, axis: GroupAxis, group: Place) -> None:
+    def put_group(self, axis: GroupAxis, group: grid.Place) -> None:
         """Say where the words are by which a row belongs to its group, if there are any."""
         rows = axis.members.of
         worded = self.worded.get(rows.name, ())
         if axis.row in worded:
             words = self.words[self.names[rows.name]]
             which = self.layouts[rows.name].rows[axis.members.group_name].tolist()
-            grouped = Grouped(words[worded.index(axis.row)], group, tuple(which))
+            grouped = grid.Grouped(words[worded.index(axis.row)], group, tuple(which))
             self.groups[grouped.own.worksheet] = (*self.groups.get(grouped.own.worksheet, ()), grouped)
 
     def rule_of(self, name: str) -> Column:
@@ -239,8 +226,8 @@ class Assembly:
         """The result, what is given, and the rest, each group under a title."""
         for axis in self.whole.axes:
             if axis.repeats and axis.repeats not in self.sheet:
-                for name, at in ((axis.repeats, 1), (checked(axis.repeats), 2)):
-                    self.places[name] = Place(self.names[axis.name], FIRST_ROW - _ABOVE, at)
+                for name, at in ((axis.repeats, 1), (grid.checked(axis.repeats), 2)):
+                    self.places[name] = grid.Place(self.names[axis.name], grid.FIRST_ROW - _ABOVE, at)
         scalars = [column for column in self.sheet.columns if column.axis is None]
         groups = (
             [self.sheet[name] for name in self.first if name in self.sheet and self.sheet[name].axis is None],
@@ -248,12 +235,12 @@ class Assembly:
             [c for c in scalars if not isinstance(c.rule, Given) and c.name not in self.first],
             [c for c in self.judged.columns if c.axis is None and c.name not in self.sheet],
         )
-        row = TOP
+        row = grid.TOP
         for at, group in enumerate(groups):
             for column in group:
-                self.places[column.name] = place = Place(SCALARS, row, 1, 1, *self.size(column))
+                self.places[column.name] = place = grid.Place(grid.SCALARS, row, 1, 1, *self.size(column))
                 if isinstance(column.rule, Given):
-                    self.places[checked(column.name)] = replace(place, column=CHECKED)
+                    self.places[grid.checked(column.name)] = replace(place, column=grid.CHECKED)
                 row += 1
             row += _GAP if group else 0
             if not at:  # results that have rows stand there, too, below those that are one number
@@ -263,25 +250,25 @@ class Assembly:
         """The numbers of rows of results that are shown with the scalars."""
         axes = (self.whole[name].axis for name in self.first if name in self.whole)
         sizes = (self.layouts[axis.name].size for axis in axes if axis is not None)
-        yield from (size for size in sizes if size <= MOST_RESULTS)
+        yield from (size for size in sizes if size <= grid.MOST_RESULTS)
 
     def put_steps(self, unrolled: Unrolled, row: int) -> int:
         """What comes before the steps one below the other, then a table with a row for each step."""
         place = row + 1
-        self.places[unrolled.check.name] = Place(STEPS, place, 1)
+        self.places[unrolled.check.name] = grid.Place(grid.STEPS, place, 1)
         for name in _counting(unrolled):
             place += 1
-            self.places[name] = Place(STEPS, place, 1)
+            self.places[name] = grid.Place(grid.STEPS, place, 1)
         for cell in unrolled.cells:
             if cell.step == 0:
                 place += 1
-                self.places[cell.name] = Place(STEPS, place, 1)
+                self.places[cell.name] = grid.Place(grid.STEPS, place, 1)
         table, last = place + 3, place
         for cell in unrolled.cells:
             if cell.step > 0:
                 fields = [own.name for own in unrolled.cells if own.step == cell.step]
                 last = table + cell.step - 1
-                self.places[cell.name] = Place(STEPS, last, 1 + fields.index(cell.name))
+                self.places[cell.name] = grid.Place(grid.STEPS, last, 1 + fields.index(cell.name))
         return last + 4
 
     def put_passes(self, loop: str, row: int) -> int:
@@ -295,9 +282,9 @@ class Assembly:
         for each in own:
             if each.number:
                 at = fields[each.number] = fields.get(each.number, 0) + 1
-                place = Place(STEPS, table + each.number - 1, at)
+                place = grid.Place(grid.STEPS, table + each.number - 1, at)
             else:
-                place = Place(STEPS, row + 1 + starts.index(each), 1)
+                place = grid.Place(grid.STEPS, row + 1 + starts.index(each), 1)
             scale, zero = self.size(self.whole[each.rule])
             self.places[each.name] = replace(place, scale=scale, zero=zero)
         return table + max((each.number for each in own), default=0) + 3
@@ -318,19 +305,21 @@ class Assembly:
 
     # --- blocks
 
-    def index_blocks(self) -> Iterator[CellBlock]:
+    def index_blocks(self) -> Iterator[grid.CellBlock]:
         """The numbers that name the rows of every axis."""
         for axis in self.whole.axes:
             for part, (place, names) in enumerate(zip(self.indices[axis.name], axis.parts, strict=True)):
                 title, meaning = names
-                yield CellBlock(title, "index", title, meaning, place, shows=("labels", axis.name, str(part)))
+                yield grid.CellBlock(
+                    title, "index", title, meaning, place, shows=("labels", axis.name, str(part))
+                )
 
-    def column_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
+    def column_blocks(self, formulas: Formulas) -> Iterator[grid.CellBlock]:
         """The columns of the sheet, and those that are drawn."""
         for column in self.whole.columns:
             if column.name in self.passes:
                 continue
-            block = CellBlock(
+            block = grid.CellBlock(
                 column.name,
                 "given",
                 column.name,
@@ -352,7 +341,7 @@ class Assembly:
                 yield _computed(replace(block, kind=kind, kept=formulas.kept(column)), written)
         for each in self.passes.values():
             column, of = self.whole[each.rule], self.sheet[each.of]
-            block = CellBlock(
+            block = grid.CellBlock(
                 each.name, "step", each.of, f"{of.meaning}, {each.when}", self.places[each.name],
                 unit=self.unit(column).text, source=of.source, of=each.loop, step=each.number,
                 shows=("column", each.name),
@@ -360,14 +349,16 @@ class Assembly:
             yield _computed(block, formulas.passed(column, each.name, names_in(self.passes, each.number)))
         for name, (leaf, axis) in sorted(self.carried.items()):
             column = self.rule_of(leaf.name)
-            block = CellBlock(
+            block = grid.CellBlock(
                 name, "carried", leaf.written, f"{leaf.name} of each row",
                 self.places[name], unit=self.unit(column).text, of=leaf.name,
                 shows=("carried", leaf.name, axis.name, str(leaf.index)),
             )  # fmt: skip
             yield _computed(block, formulas.carried(leaf))
 
-    def given_blocks(self, column: Column, block: CellBlock, formulas: Formulas) -> Iterator[CellBlock]:
+    def given_blocks(
+        self, column: Column, block: grid.CellBlock, formulas: Formulas
+    ) -> Iterator[grid.CellBlock]:
         """What is typed, and what of it is allowed; how many rows there are is what the worksheets have."""
         bounds = self.whole.bounds[column.name].over(block.place.scale, block.place.zero)
         if any(axis.repeats == column.name for axis in self.whole.axes):
@@ -375,18 +366,18 @@ class Assembly:
             bounds = Bounds(there, there)
         test = guard(bounds)
         yield replace(block, bounds=bounds, guard=test)
-        name = checked(column.name)
+        name = grid.checked(column.name)
         own = replace(
             block, name=name, kind="checked", meaning=f"{column.name}, where it is allowed",
             place=self.places[name], of=column.name,
         )  # fmt: skip
         yield _computed(own, formulas.checked(column, test, self.groups.get(block.place.worksheet, ())))
 
-    def step_blocks(self, formulas: Formulas) -> Iterator[CellBlock]:
+    def step_blocks(self, formulas: Formulas) -> Iterator[grid.CellBlock]:
         """The cells on the way to roots."""
         for unrolled in self.unrolled.values():
             name = unrolled.check.name
-            block = CellBlock(
+            block = grid.CellBlock(
                 name, "step", "precedents", "whether all precedents have values, or the first error",
                 self.places[name], of=unrolled.column.name, source=unrolled.column.source,
                 shows=("cell", name),
@@ -395,25 +386,25 @@ class Assembly:
             if unrolled.issued is not None:
                 yield from self.counting_blocks(unrolled, formulas)
             for cell in unrolled.cells:
-                block = CellBlock(
+                block = grid.CellBlock(
                     cell.name, "step", cell.title, cell.meaning, self.places[cell.name],
                     of=unrolled.column.name, step=cell.step, shows=("cell", cell.name),
                 )  # fmt: skip
                 yield _computed(block, formulas.auxiliary(unrolled, cell))
         guarded = [unrolled.column for unrolled in self.unrolled.values() if unrolled.issued is not None]
         for column in self.asked:
-            yield CellBlock(
-                as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
-                "for which the roots were counted", self.places[as_issued(column.name)],
+            yield grid.CellBlock(
+                grid.as_issued(column.name), "step", f"{column.name} as issued", f"{column.name} as issued, "
+                "for which the roots were counted", self.places[grid.as_issued(column.name)],
                 of=guarded[0].name, source=column.source, shows=("typed column", column.name),
             )  # fmt: skip
 
-    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[CellBlock]:
+    def counting_blocks(self, unrolled: Unrolled, formulas: Formulas) -> Iterator[grid.CellBlock]:
         """Whether the inputs are as issued, and how many roots there are then."""
         issued, counted = _counting(unrolled)
         column = unrolled.column
         given = [c.name for c in self.sheet.ancestors(column) if isinstance(c.rule, Given)]
-        block = CellBlock(
+        block = grid.CellBlock(
             issued, "step", "as issued", "1 if all inputs are those as issued, for which the roots were "
             "counted; if not, build the report again", self.places[issued], of=column.name,
             source=column.source, shows=("cell", issued),
@@ -424,7 +415,7 @@ class Assembly:
         yield replace(block, name=counted, title="counted", meaning=says, place=place, shows=shows)
 
 
-def _computed(block: CellBlock, filled: tuple[FilledDown, ...]) -> CellBlock:
+def _computed(block: grid.CellBlock, filled: tuple[grid.FilledDown, ...]) -> grid.CellBlock:
     """The block with its formulas."""
     return replace(block, filled=filled, array=works_on_ranges(filled[0].first))
 

@@ -15,39 +15,23 @@ import numpy as np
 
 from ..result.verdict import INPUT, Change, Tried
 from ..result.verdict_words import mismatch as in_words
+from . import habits, scales
 from .digits import is_slip
 from .exchanges import columns, exchanged_in_tables, exchanged_inputs, exchanged_rows, orders
-from .habits import (
-    CHOSEN_FOR_ONE,
-    NEUTRAL,
-    computed_from_printed,
-    every_row,
-    neglected,
-    other_conventions,
-    other_rows,
-    rounded_constants,
-    without_a_test,
-)
 from .misprints import misprint, misprints, slipped, two_misprints
 from .problem import Problem
-from .scales import (
-    misplaced_inputs,
-    misplaced_tables,
-    misplaced_together,
-    truncated_inputs,
-    truncated_tables,
-)
 from .search import Explained, Search
 
 Kind = Callable[[Search], Iterator[Explained]]
 
 KINDS: tuple[tuple[Kind, ...], ...] = (
-    (computed_from_printed, every_row, other_conventions, rounded_constants),
+    (habits.computed_from_printed, habits.every_row, habits.other_conventions, habits.rounded_constants),
     (
-        truncated_inputs, truncated_tables, exchanged_inputs, exchanged_in_tables, exchanged_rows, columns,
-        without_a_test, other_rows, neglected, misplaced_inputs, misplaced_tables, misprints,
+        scales.truncated_inputs, scales.truncated_tables, exchanged_inputs, exchanged_in_tables,
+        exchanged_rows, columns, habits.without_a_test, habits.other_rows, habits.neglected,
+        scales.misplaced_inputs, scales.misplaced_tables, misprints,
     ),
-    (orders, misplaced_together, two_misprints),
+    (orders, scales.misplaced_together, two_misprints),
 )  # fmt: skip
 """What is tried, in the order of how much it changes: later ones only where the earlier explain nothing."""
 
@@ -92,10 +76,10 @@ def possibilities(problem: Problem) -> tuple[Explained, ...]:
     search = Search(problem)
     kinds = (
         *KINDS[0],
-        truncated_inputs,
-        truncated_tables,
-        neglected,
-        misplaced_together,
+        scales.truncated_inputs,
+        scales.truncated_tables,
+        habits.neglected,
+        scales.misplaced_together,
         slipped,
         exchanged_in_tables,
         exchanged_rows,
@@ -134,7 +118,7 @@ class Doubts:
     def _is_any_number(self, change: Change) -> bool:
         """Whether what is exact would be another number, found among so many that one always does."""
         if change.kind == "parameter":
-            return self.alone is not None and _digits(change) > CHOSEN_FOR_ONE
+            return self.alone is not None and _digits(change) > habits.CHOSEN_FOR_ONE
         is_misprint = (change.kind, change.source) == ("misprint", INPUT)
         return is_misprint and (change.cell, change.index) in self.exact
 
@@ -162,7 +146,7 @@ class Doubts:
 
 def _is_neglect(change: Change) -> bool:
     """Whether a parameter was taken as if there were none of it."""
-    return change.kind == "parameter" and change.would_print in NEUTRAL
+    return change.kind == "parameter" and change.would_print in habits.NEUTRAL
 
 
 def _is_rounding(change: Change) -> bool:

@@ -14,32 +14,15 @@ from ...derivations.proved import enumerated
 from ..cells.address import address, index_text
 from ..inputs.published import PublishedValue
 from ..quantity import Printed, behind
-from .verdict import (
-    ALL,
-    EXACT,
-    INPUT,
-    NOT_CHECKABLE,
-    NOT_FOUND,
-    REACHABLE,
-    UNREACHABLE,
-    WITHIN,
-    Change,
-    Explanation,
-    Fit,
-    Referee,
-    Relabelled,
-    TableVerdict,
-    Tried,
-    Verdict,
-)
+from . import verdict
 
 CALLED = {
-    EXACT: "exact",
-    REACHABLE: "reachable",
-    WITHIN: "within uncertainty",
-    UNREACHABLE: "unreachable",
-    NOT_FOUND: "not found",
-    NOT_CHECKABLE: "no value",
+    verdict.EXACT: "exact",
+    verdict.REACHABLE: "reachable",
+    verdict.WITHIN: "within uncertainty",
+    verdict.UNREACHABLE: "unreachable",
+    verdict.NOT_FOUND: "not found",
+    verdict.NOT_CHECKABLE: "no value",
 }
 """A verdict in a table or a picture."""
 
@@ -96,7 +79,7 @@ def at_least(value: float) -> str:
     return next((f"{one:f}" for one in shown if one > 1), f"{Decimal(value):f}")
 
 
-def bounds(found: Verdict, printed: Printed) -> tuple[str, str] | None:
+def bounds(found: verdict.Verdict, printed: Printed) -> tuple[str, str] | None:
     """What no printed input can leave, in the printed unit with one decimal more; None if it is not known."""
     if found.bound_low is None or found.bound_high is None:
         return None
@@ -126,12 +109,12 @@ def _whole(value: Fraction, places: int, rounding: str) -> Decimal:
 # --- names -----------------------------------------------------------------------------------------------
 
 
-def called(published: PublishedValue, found: Verdict) -> str:
+def called(published: PublishedValue, found: verdict.Verdict) -> str:
     """The verdict on a value, and what that means where it does not come out."""
-    if found.verdict == WITHIN:
-        return f"{CALLED[WITHIN]}, but no input that prints as given was found to yield it"
+    if found.verdict == verdict.WITHIN:
+        return f"{CALLED[verdict.WITHIN]}, but no input that prints as given was found to yield it"
     ends = bounds(found, published.printed)
-    if found.verdict != UNREACHABLE or ends is None:
+    if found.verdict != verdict.UNREACHABLE or ends is None:
         return CALLED[found.verdict]
     return f"{CALLED[found.verdict]}: {certain(ends)}"
 
@@ -144,7 +127,7 @@ def certain(ends: tuple[str, str]) -> str:
 # --- tables ----------------------------------------------------------------------------------------------
 
 
-def together(table: TableVerdict) -> str:
+def together(table: verdict.TableVerdict) -> str:
     """Whether all values of a table come out of one input, without a full stop."""
     whose, off = _whose(table), "" if table.mismatch is None else _half_units(table.mismatch)
     come = "comes" if table.values == 1 else "come"
@@ -170,7 +153,7 @@ def together(table: TableVerdict) -> str:
     return "none of the published values could be asked for: their cells have no values"
 
 
-def all_together(found: Referee) -> str:
+def all_together(found: verdict.Referee) -> str:
     """The same of all tables; shortly, where one of them has told all of it."""
     joint = found.joint
     assert joint is not None
@@ -178,23 +161,23 @@ def all_together(found: Referee) -> str:
     source = next(alike, "")
     if joint.possible or not source:
         return together(joint)
-    come = "cannot come out" if joint.verdict == UNREACHABLE else "did not come out"
+    come = "cannot come out" if joint.verdict == verdict.UNREACHABLE else "did not come out"
     return f"{_whose(joint)} {come} either, as is told of {source}"
 
 
-def _told(table: TableVerdict) -> tuple[str, str, str]:
+def _told(table: verdict.TableVerdict) -> tuple[str, str, str]:
     """What is said of how far off a table is."""
     ends = (table.mismatch, mismatch), (table.at_least, at_least)
     off, least = ("" if value is None else said(value) for value, said in ends)
     return table.verdict, off, least
 
 
-def contradiction(table: TableVerdict) -> str:
+def contradiction(table: verdict.TableVerdict) -> str:
     """What is certain of a table that does not come out."""
     return f"{_whose(table)} cannot come out of one input that prints as given"
 
 
-def evidence(table: TableVerdict) -> str:
+def evidence(table: verdict.TableVerdict) -> str:
     """Why it does not."""
     parts = []
     if table.mismatch is not None:
@@ -208,9 +191,9 @@ def evidence(table: TableVerdict) -> str:
     return "; ".join(parts)
 
 
-def _whose(table: TableVerdict) -> str:
+def _whose(table: verdict.TableVerdict) -> str:
     n = table.values
-    if table.source == ALL:
+    if table.source == verdict.ALL:
         return f"all {n} published values together" if n > 1 else "the published value"
     return f"the {n} values of {table.source}" if n > 1 else f"the value of {table.source}"
 
@@ -218,24 +201,24 @@ def _whose(table: TableVerdict) -> str:
 # --- what would explain it -------------------------------------------------------------------------------
 
 
-def explained(found: Explanation) -> str:
+def explained(found: verdict.Explanation) -> str:
     """What is claimed and what follows."""
     told = " and ".join(claimed(change) for change in found.changes)
     several = sum(bool(change.also) for change in found.changes) > 1
     return f"{told}{f', {EACH_ALONE}' if several else ''}: {follows(found)}"
 
 
-def name(found: Explanation) -> str:
+def name(found: verdict.Explanation) -> str:
     """What a known difference that rests on it calls it: ``misprint x_p[2]``, ``order x_m (Table 3)``."""
     return " and ".join(map(_name, found.changes))
 
 
-def _name(change: Change, *, sourced: bool = True) -> str:
-    where = f"({change.source})" if sourced and change.source != INPUT else ""
+def _name(change: verdict.Change, *, sourced: bool = True) -> str:
+    where = f"({change.source})" if sourced and change.source != verdict.INPUT else ""
     return " ".join(filter(None, (change.kind, address(change.cell, change.index), where)))
 
 
-def holds(said: str, explanations: Sequence[Explanation]) -> bool:
+def holds(said: str, explanations: Sequence[verdict.Explanation]) -> bool:
     """Whether what a known difference is explained by is an explanation; nothing always is.
 
     It may be its name, also without the table, or what the referee says that is claimed.
@@ -252,13 +235,13 @@ def holds(said: str, explanations: Sequence[Explanation]) -> bool:
     )
 
 
-def names(explanations: Sequence[Explanation]) -> str:
+def names(explanations: Sequence[verdict.Explanation]) -> str:
     """What the column ``explained`` calls each of some explanations."""
     called = dict.fromkeys(map(name, explanations))
     return f"in the column 'explained' of a known difference: {'; '.join(called)}"
 
 
-def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
+def perhaps(explanations: Sequence[verdict.Explanation]) -> tuple[str, ...]:
     """What would explain that values do not come out together, or that nothing does.
 
     Of many the first: they stand in the order in which the referee holds them for likely.
@@ -269,14 +252,14 @@ def perhaps(explanations: Sequence[Explanation]) -> tuple[str, ...]:
     return tuple(told) or (NOTHING_EXPLAINS,)
 
 
-def why(found: Referee) -> tuple[str, ...]:
+def why(found: verdict.Referee) -> tuple[str, ...]:
     """The same for all published values, and how certain that is; nothing where none is asked for."""
     if not found.asked_why:
         return tuple(f"or perhaps {explained(each)}" for each in found.slips)
     return (*perhaps(found.explanations), *([tried(found.tried)] if found.tried is not None else []))
 
 
-def tried(found: Tried) -> str:
+def tried(found: verdict.Tried) -> str:
     """How many changes were tried, and what became of them."""
     explaining, excluded, left = found.explaining, found.excluded, found.open
     number = explaining + excluded + left
@@ -288,7 +271,7 @@ def tried(found: Tried) -> str:
     )
 
 
-def headline(explanations: Sequence[Explanation]) -> str:
+def headline(explanations: Sequence[verdict.Explanation]) -> str:
     """What is said above explanations."""
     with_which = "that was found with which everything published comes out"
     if explanations[0].as_printed:
@@ -305,16 +288,17 @@ def headline(explanations: Sequence[Explanation]) -> str:
     return f"{first}.{several} Nobody is accused"
 
 
-def follows(found: Explanation) -> str:
+def follows(found: verdict.Explanation) -> str:
     """What follows from a change."""
     which = "all" if found.values == found.of else "the other"
     values = f"{which} {found.values} published values come" if found.values > 1 else "the value comes"
     return f"then {values} out of one input, with a worst mismatch of {_half_units(found.mismatch)}"
 
 
-def claimed(change: Change) -> str:
+def claimed(change: verdict.Change) -> str:
     """What is claimed of something printed."""
-    cell, of = address(change.cell, change.index), "" if change.source == INPUT else f" of {change.source}"
+    cell = address(change.cell, change.index)
+    of = "" if change.source == verdict.INPUT else f" of {change.source}"
     printed, would = change.printed, change.would_print
     match change.kind:
         case "printed":
@@ -346,20 +330,20 @@ def claimed(change: Change) -> str:
     return f"{cell}{of} is printed {printed} for {would}{_or(change)}"
 
 
-def _or(change: Change) -> str:
+def _or(change: verdict.Change) -> str:
     """The other ways in which it could stand."""
     if change.span:
         return f" (or {', '.join(change.also)}; anything from {change.span[0]} to {change.span[1]})"
     return f" (or {', '.join(change.also)})" if change.also else ""
 
 
-def suggested(found: Explanation) -> str:
+def suggested(found: verdict.Explanation) -> str:
     """What is claimed, shortly: what a line of the ledger says beside the cell of the first change."""
     first, *others = found.changes
     return " and ".join((_suggested(first), *map(claimed, others)))
 
 
-def _suggested(change: Change) -> str:
+def _suggested(change: verdict.Change) -> str:
     printed, would = change.printed, " or ".join((change.would_print, *change.also))
     match change.kind:
         case "truncated" | "parameter":
@@ -381,13 +365,13 @@ def _suggested(change: Change) -> str:
     return f"{printed} may have to read {would}"
 
 
-def relabelled(label: Relabelled) -> str:
+def relabelled(label: verdict.Relabelled) -> str:
     """That a row is named after an equation which it cannot come from."""
     named = f"{label.source} names {label.cell} after {label.printed}"
     return f"{named}, but it comes out of {label.right}: {because(label)}"
 
 
-def because(label: Relabelled) -> str:
+def because(label: verdict.Relabelled) -> str:
     """Why it cannot."""
     given = " and ".join(f"{name} in {unit}" for name, unit in label.gives)
     kind = f"{label.printed} gives {given}, no {label.wanted[0]} in {label.wanted[1]}"
@@ -397,7 +381,7 @@ def because(label: Relabelled) -> str:
     return f"{kind}; the worst mismatch is {_half_units(label.mismatch)}{others}"
 
 
-def amended(found: Referee) -> tuple[str, ...]:
+def amended(found: verdict.Referee) -> tuple[str, ...]:
     """What comes out with the known misprints put right, and what would explain that not all does."""
     if found.amended is None:
         return ()
@@ -413,7 +397,7 @@ def amended(found: Referee) -> tuple[str, ...]:
     return said, f"with that, {first}", *others
 
 
-def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
+def lines(found: verdict.Referee, meaning: Callable[[str], str]) -> Iterator[str]:
     """All of it for a terminal, a finding a line.
 
     `meaning`: takes a column's name; returns what it is.
@@ -437,7 +421,7 @@ def lines(found: Referee, meaning: Callable[[str], str]) -> Iterator[str]:
 # --- which average was published -------------------------------------------------------------------------
 
 
-def fit(found: Fit, meaning: Callable[[str], str]) -> str:
+def fit(found: verdict.Fit, meaning: Callable[[str], str]) -> str:
     """What a published average may be, in two sentences.
 
     `meaning`: takes a column's name; returns what it is.
@@ -453,7 +437,7 @@ def fit(found: Fit, meaning: Callable[[str], str]) -> str:
     )
 
 
-def told(found: Fit, meaning: Callable[[str], str]) -> str:
+def told(found: verdict.Fit, meaning: Callable[[str], str]) -> str:
     """What that says of it."""
     good = [f"the {meaning(name)}" for name, off in found.mismatch.items() if off <= 1]
     if not good:

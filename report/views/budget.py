@@ -10,20 +10,11 @@ from dataclasses import dataclass
 from ..cells.address import address
 from ..distribution import Shape
 from ..quantity import behind
+from ..result import uncertain
 from ..result.conformity import lines
 from ..result.numbers import decimals, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
-from ..result.uncertain import (
-    TOLERANCE,
-    Budget,
-    Conformity,
-    Contribution,
-    Distributed,
-    Scattered,
-    Together,
-    draws_of,
-)
 from .blocks import Block, TextTable, printers
 
 WIDER = 1.02
@@ -38,25 +29,25 @@ SHIFTED = 0.05
 class Besides:
     """What is told beside a budget."""
 
-    drawn: Distributed | None = None
+    drawn: uncertain.Distributed | None = None
     """What draws told."""
-    limited: Sequence[Conformity] = ()
+    limited: Sequence[uncertain.Conformity] = ()
     """The cell beside its limits."""
-    scattered: Scattered | None = None
+    scattered: uncertain.Scattered | None = None
     """What the rows say that it was fitted to."""
 
 
 NOTHING = Besides()
 
 
-def sentence(report: Report, budget: Budget) -> str:
+def sentence(report: Report, budget: uncertain.Budget) -> str:
     """The result in a line: ``alpha_mean = 1.3026, u = 0.0035, U = 0.0069 with k = 1.96 for 95 %``."""
     unit = behind(report.shown[budget.name].unit)
     if math.isnan(budget.value):
         return report.values.cell(budget.name, budget.label).reason
     if not budget.is_known:
         told = report.text(report.values.cell(budget.name, budget.label))
-        why = f": {budget.unlooked}; use '{draws_of(budget.cell)}'" if budget.unlooked else ""
+        why = f": {budget.unlooked}; use '{uncertain.draws_of(budget.cell)}'" if budget.unlooked else ""
         return f"{budget.cell} = {told}, and its uncertainty is not known{why}"
     if not budget.u:
         return f"{budget.cell} = {report.shown[budget.name].digits_of(budget.value)}{unit}, exactly"
@@ -68,7 +59,7 @@ def sentence(report: Report, budget: Budget) -> str:
     return f"{told}, U = {expanded.text}{unit} with k = {rounded(budget.factor, 3).text} for {_level(budget)}"
 
 
-def _blocks(report: Report, budget: Budget, besides: Besides = NOTHING) -> Iterator[Block]:
+def _blocks(report: Report, budget: uncertain.Budget, besides: Besides = NOTHING) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
     said = [sentence(report, budget), *_of_limits(report, besides.limited)]
     told = [*notes(report, budget), *_of_scatter(report, budget, besides.scattered)]
@@ -79,7 +70,7 @@ def _blocks(report: Report, budget: Budget, besides: Besides = NOTHING) -> Itera
         yield [*said, *told]
 
 
-def _as_json(report: Report, budget: Budget, besides: Besides = NOTHING) -> str:
+def _as_json(report: Report, budget: uncertain.Budget, besides: Besides = NOTHING) -> str:
     """All digits, in SI."""
     by = {"scatter": _scatter(besides.scattered)} if besides.scattered else {}
     monte_carlo = {} if besides.drawn is None else {"monte_carlo": _drawn(besides.drawn)}
@@ -112,7 +103,7 @@ def _as_json(report: Report, budget: Budget, besides: Besides = NOTHING) -> str:
     )
 
 
-def _scatter(by: Scattered) -> dict[str, object]:
+def _scatter(by: uncertain.Scattered) -> dict[str, object]:
     return {"u": by.u, "dof": by.dof, "k": by.factor, "U": by.expanded}
 
 
@@ -120,7 +111,7 @@ FORMATS = {**printers(_blocks), "json": _as_json}
 """What renders a budget, by the name of the format."""
 
 
-def _source(each: Contribution) -> dict[str, object]:
+def _source(each: uncertain.Contribution) -> dict[str, object]:
     source = each.source
     return {
         "source": source.name,
@@ -135,7 +126,7 @@ def _source(each: Contribution) -> dict[str, object]:
     }
 
 
-def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
+def _row(report: Report, budget: uncertain.Budget, each: uncertain.Contribution) -> tuple[str, ...]:
     source = each.source
     name, row, _ = source.moves[0]
     (unit, _), (own, own_scale) = _unit(report, name), _unit(report, budget.name)
@@ -158,7 +149,7 @@ def _row(report: Report, budget: Budget, each: Contribution) -> tuple[str, ...]:
     )
 
 
-def notes(report: Report, budget: Budget, draws: str = "--draws") -> Iterator[str]:
+def notes(report: Report, budget: uncertain.Budget, draws: str = "--draws") -> Iterator[str]:
     """What there is to say of a budget besides its numbers, a sentence each."""
     alike: dict[tuple[str, ...], list[str]] = {}
     columns = {each.source.name: each.source.moves[0][0] for each in budget.contributions}
@@ -192,17 +183,17 @@ def notes(report: Report, budget: Budget, draws: str = "--draws") -> Iterator[st
     yield from map(_together, budget.summed)
 
 
-def _together(summed: Together) -> str:
+def _together(summed: uncertain.Together) -> str:
     """How much cells that share their inputs tell: ``the 10 cells of alpha tell as much as 4 ...``."""
     larger = [rounded(value, 2).text for value in summed.eigenvalues[: summed.rank]]
     less = summed.eigenvalues[summed.rank :]
     told = ", ".join(larger) + (f", then {rounded(less[0], 1).text} and less" if less else "")
     cells = f"the {len(summed.eigenvalues)} cells of {summed.name}"
-    rank = f"{summed.rank} at a tolerance of {TOLERANCE}"
+    rank = f"{summed.rank} at a tolerance of {uncertain.TOLERANCE}"
     return f"{cells} tell as much as {rank}: the eigenvalues of their correlation are {told}"
 
 
-def _of_scatter(report: Report, budget: Budget, found: Scattered | None) -> Iterator[str]:
+def _of_scatter(report: Report, budget: uncertain.Budget, found: uncertain.Scattered | None) -> Iterator[str]:
     """What the rows say of a number that was fitted to them, whatever is stated of them."""
     if found is None:
         return
@@ -214,11 +205,11 @@ def _of_scatter(report: Report, budget: Budget, found: Scattered | None) -> Iter
     )
 
 
-def _level(budget: Budget) -> str:
+def _level(budget: uncertain.Budget) -> str:
     return f"{100 * budget.level:.12g} %"
 
 
-def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iterator[str]:
+def _of_draws(report: Report, budget: uncertain.Budget, drawn: uncertain.Distributed | None) -> Iterator[str]:
     """What Monte Carlo told."""
     if drawn is None:
         return
@@ -287,7 +278,7 @@ def _of_draws(report: Report, budget: Budget, drawn: Distributed | None) -> Iter
         )
 
 
-def _drawn(drawn: Distributed) -> dict[str, object]:
+def _drawn(drawn: uncertain.Distributed) -> dict[str, object]:
     return {
         "draws": drawn.number,
         "without_value": drawn.lost,
@@ -304,12 +295,12 @@ def _drawn(drawn: Distributed) -> dict[str, object]:
     }
 
 
-def _of_limits(report: Report, limited: Iterable[Conformity]) -> Iterator[str]:
+def _of_limits(report: Report, limited: Iterable[uncertain.Conformity]) -> Iterator[str]:
     """What limits say of the cell, in lines."""
     return (line for each in limited for line in lines(report, each))
 
 
-def _conformity(found: Conformity) -> dict[str, object]:
+def _conformity(found: uncertain.Conformity) -> dict[str, object]:
     return {
         "limits": list(map(number, found.limits.ends)),
         "level": found.limits.guard.level,
