@@ -35,7 +35,7 @@ VOCABULARY = Vocabulary(
     Quantity("d", "diameter of the ball", "m", "d%s", (1e-3, 5e-2)),
     Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
     Quantity("F", "impact force", "N", "F%s", (1.0, 5000.0)),
-    Quantity("z", "height over the ball's centre", "m", "z%s", (-1e-3, 1e-3), positive=False),
+    Quantity("z", "height over the ball's centre", "m", "z%s", (-1e-3, 1e-3)),
     Quantity("u", "reciprocal of alpha + 1", "1", "u%s", (0.3, 0.6)),
     Quantity(
         "u_turn", "u at which the logarithm turns", "1", r"u_{\mathrm{turn}%s}", (0.05, 0.95), positive=False
@@ -53,18 +53,10 @@ VOCABULARY = Vocabulary(
         "normal component of the relative velocity after impact",
         "m/s",
         r"\mathbf{v}''\cdot\mathbf{n}%s",
-        (-8.0, -0.05),
-        positive=False,  # the bodies come apart again
+        (-8.0, -0.05),  # the bodies come apart again
         text="v''.n%s",
     ),
-    Quantity(
-        "Lambda",
-        "logarithm of the ratio of both impact speeds",
-        "1",
-        r"\Lambda%s",
-        (-2.0, 2.0),
-        positive=False,
-    ),
+    Quantity("Lambda", "logarithm of the ratio of both impact speeds", "1", r"\Lambda%s", (-2.0, 2.0)),
     Quantity("n", "exponent of Meyer's law", "1", "n%s", (2.0, 3.0)),
     Quantity(
         "x_ref", "approach that makes the logarithms pure numbers", "m", r"x_{\mathrm{ref}%s}", (1e-5, 1e-4)
@@ -73,14 +65,12 @@ VOCABULARY = Vocabulary(
         "F_ref", "force that makes the logarithms pure numbers", "N", r"F_{\mathrm{ref}%s}", (100.0, 5000.0)
     ),
     Quantity("x_top", "largest approach of the pair", "m", r"x_{\mathrm{top}%s}", (1e-5, 1e-4)),
-    Quantity(
-        "X", "logarithm of a point's approach over the reference", "1", "X%s", (-1.0, 1.0), positive=False
-    ),
-    Quantity("Y", "logarithm of a point's force over the reference", "1", "Y%s", (-1.0, 1.0), positive=False),
-    Quantity("Xmean", "mean of X over the points", "1", r"\bar{X}%s", (-1.0, 1.0), positive=False),
-    Quantity("Ymean", "mean of Y over the points", "1", r"\bar{Y}%s", (-1.0, 1.0), positive=False),
-    Quantity("a", "intercept of the fitted line", "1", "a%s", (-1.0, 1.0), positive=False),
-    Quantity("b", "slope of the fitted line", "1", "b%s", (-1.0, 1.0), positive=False),
+    Quantity("X", "logarithm of a point's approach over the reference", "1", "X%s", (-1.0, 1.0)),
+    Quantity("Y", "logarithm of a point's force over the reference", "1", "Y%s", (-1.0, 1.0)),
+    Quantity("Xmean", "mean of X over the points", "1", r"\bar{X}%s", (-1.0, 1.0)),
+    Quantity("Ymean", "mean of Y over the points", "1", r"\bar{Y}%s", (-1.0, 1.0)),
+    Quantity("a", "intercept of the fitted line", "1", "a%s", (-1.0, 1.0)),
+    Quantity("b", "slope of the fitted line", "1", "b%s", (-1.0, 1.0)),
     Quantity("C_b", "coefficient of the fitted line", "N/m^b", "C%s", (1e7, 1e10), text="C%s"),
     Quantity("alpha_mean", "mean exponent", "1", r"\bar{\alpha}%s", (1.0, 1.5)),
     Quantity("alpha_median", "median exponent", "1", r"\tilde{\alpha}%s", (1.0, 1.5)),
@@ -96,35 +86,21 @@ VOCABULARY = Vocabulary(
     Quantity("u_e", "standard uncertainty of the restitution", "1", r"u(e%s)", (1e-4, 1e-3)),
     Quantity("u_x", "standard uncertainty of the imprint depth", "m", r"u(x_{p%s})", (1e-6, 1e-5)),
     Quantity(
-        "D",
-        "change of the imprint depth with the exponent, for a given force F_0",
-        "m",
-        "D%s",
-        (-1e-4, 1e-4),
-        positive=False,
+        "D", "change of the imprint depth with the exponent, for a given force F_0", "m", "D%s", (-1e-4, 1e-4)
     ),
     Quantity("B_v", "change of the imprint depth with the speed", "s", "B_{v%s}", (1e-6, 1e-4)),
-    Quantity(
-        "B_e",
-        "change of the imprint depth with the restitution",
-        "m",
-        "B_{e%s}",
-        (-1e-4, -1e-6),
-        positive=False,
-    ),
+    Quantity("B_e", "change of the imprint depth with the restitution", "m", "B_{e%s}", (-1e-4, -1e-6)),
     Quantity("W", "weight of the test", "1/m^2", "W%s", (1e10, 1e20)),
-    Quantity("R", "misfit of the test", "m", "R%s", (-1e-6, 1e-6), positive=False),
-    Quantity("lam", "multiplier: how hard the test pulls", "1/m", r"\lambda%s", (-1e9, 1e9), positive=False),
+    Quantity("R", "misfit of the test", "m", "R%s", (-1e-6, 1e-6)),
+    Quantity("lam", "multiplier: how hard the test pulls", "1/m", r"\lambda%s", (-1e9, 1e9)),
     # The normal matrix of exponent and force.
     Quantity("S_DD", "sum of the weighted squares of D", "1", "S_{DD%s}", (1e5, 1e6)),
-    Quantity(
-        "S_DX", "sum of the weighted products of D and x_p", "1", "S_{DX%s}", (-1e5, 1e5), positive=False
-    ),
+    Quantity("S_DX", "sum of the weighted products of D and x_p", "1", "S_{DX%s}", (-1e5, 1e5)),
     Quantity("S_XX", "sum of the weighted squares of x_p", "1", "S_{XX%s}", (1e7, 1e8)),
     Quantity("Delta", "determinant of the normal matrix", "1", r"\Delta%s", (1e12, 1e14)),
     Quantity("h", "leverage of the test: how far the curve follows it", "1", "h%s", (0.01, 0.99)),
     Quantity("alpha_k", "exponent without the test, to first order", "1", r"\alpha'%s", (1.0, 1.5)),
-    Quantity("phi", "step of the force that goes with it", "1", r"\varphi%s", (-0.1, 0.1), positive=False),
+    Quantity("phi", "step of the force that goes with it", "1", r"\varphi%s", (-0.1, 0.1)),
     # How sure the force of the curve is; c are the elements of the covariance matrix of alpha and ln F_0.
     Quantity("c_aa", "variance of the exponent", "1", r"c_{\alpha\alpha%s}", (1e-6, 1e-4)),
     Quantity(
@@ -133,44 +109,20 @@ VOCABULARY = Vocabulary(
         "1",
         r"c_{\alpha F%s}",
         (-1e-7, 1e-7),
-        positive=False,
     ),
     Quantity("c_FF", "variance of the logarithm of the force F_0", "1", "c_{FF%s}", (1e-6, 1e-4)),
     Quantity("u_C", "standard uncertainty of the force on the curve", "N", "u(C'%s)", (1.0, 100.0)),
-    Quantity(
-        "dC",
-        "what its misfit adds to the force of the test",
-        "N",
-        r"\delta C'%s",
-        (-100.0, 100.0),
-        positive=False,
-    ),
+    Quantity("dC", "what its misfit adds to the force of the test", "N", r"\delta C'%s", (-100.0, 100.0)),
     Quantity("u_new", "standard deviation of the force of a further test", "N", "u_{+}(C'%s)", (1.0, 100.0)),
     # The exponent may go with the depth: alpha + tau ln(x/x_0).
-    Quantity(
-        "tau",
-        "trend: what the exponent gains as the depth grows e-fold",
-        "1",
-        r"\tau%s",
-        (-1.0, 1.0),
-        positive=False,
-    ),
+    Quantity("tau", "trend: what the exponent gains as the depth grows e-fold", "1", r"\tau%s", (-1.0, 1.0)),
     Quantity("u_tau", "standard uncertainty of the trend", "1", r"u(\tau%s)", (1e-3, 1.0)),
-    Quantity(
-        "gamma",
-        "relative change of the maximum force with the trend",
-        "1",
-        r"\gamma%s",
-        (-1.0, 1.0),
-        positive=False,
-    ),
-    Quantity("G", "change of the approach with the trend", "m", "G%s", (-1e-4, 1e-4), positive=False),
-    Quantity("T", "change of the imprint depth with the trend", "m", "T%s", (-1e-4, 1e-4), positive=False),
+    Quantity("gamma", "relative change of the maximum force with the trend", "1", r"\gamma%s", (-1.0, 1.0)),
+    Quantity("G", "change of the approach with the trend", "m", "G%s", (-1e-4, 1e-4)),
+    Quantity("T", "change of the imprint depth with the trend", "m", "T%s", (-1e-4, 1e-4)),
     Quantity("S_TT", "sum of the weighted squares of T", "1", "S_{TT%s}", (1e5, 1e6)),
-    Quantity("S_TD", "sum of the weighted products of T and D", "1", "S_{TD%s}", (-1e5, 1e5), positive=False),
-    Quantity(
-        "S_TX", "sum of the weighted products of T and x_p", "1", "S_{TX%s}", (-1e5, 1e5), positive=False
-    ),
+    Quantity("S_TD", "sum of the weighted products of T and D", "1", "S_{TD%s}", (-1e5, 1e5)),
+    Quantity("S_TX", "sum of the weighted products of T and x_p", "1", "S_{TX%s}", (-1e5, 1e5)),
     Quantity("Q", "what of S_TT exponent and force do not make up for", "1", "Q%s", (1e3, 1e5)),
     Quantity("dchi2", "sum of squares that the trend takes off", "1", r"\Delta\chi^2%s", (0.1, 100.0)),
     Quantity(
@@ -179,7 +131,6 @@ VOCABULARY = Vocabulary(
         "1",
         r"G_{\alpha%s}",
         (-1e3, 1e3),
-        positive=False,
     ),
     Quantity(
         "G_F",
@@ -187,7 +138,6 @@ VOCABULARY = Vocabulary(
         "1",
         r"G_{F%s}",
         (-1e3, 1e3),
-        positive=False,
     ),
     Quantity(
         "chi2",
@@ -203,7 +153,7 @@ VOCABULARY = Vocabulary(
         r"u(\alpha%s)",
         (1e-4, 1e-1),
     ),
-    Quantity("z_R", "misfit of the test, in standard deviations", "1", "z%s", (-5.0, 5.0), positive=False),
+    Quantity("z_R", "misfit of the test, in standard deviations", "1", "z%s", (-5.0, 5.0)),
     Quantity(
         "u_B",
         "standard uncertainty of the exponent by the scatter: times the Birge ratio, with Student's t",

@@ -115,13 +115,17 @@ class Quantity:
     """How the source prints it; ``%s`` is where a subscript goes (nothing, or the test's number)."""
     span: tuple[float, float] = (0.5, 2.0)
     """The interval in which proofs sample it, in SI."""
-    positive: bool = True
-    """Whether it is positive on the domain of every model here (a logarithm is not)."""
+    positive: bool | None = None
+    """Whether it is positive in every model here (a logarithm is not); left out: if all of `span` is."""
     text: str = ""
     """How a terminal shows it; ``%s`` is where a subscript goes. Left out: the name, then the subscript."""
     low: float | None = None
     high: float | None = None
     """`low` and `high`: between which it is known to lie, in SI: nothing else is let in."""
+
+    def __post_init__(self) -> None:
+        if self.positive is None:
+            object.__setattr__(self, "positive", self.span[0] > 0)
 
     def called(self, subscript: str = "") -> str:
         """How a terminal shows it, of a row or of all."""

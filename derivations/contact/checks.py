@@ -23,11 +23,11 @@ from .one_constant import COMES_BACK
 from .quantities import SHARED
 
 OWN = (
-    Quantity("ln_v", "logarithm of the speed over the mean speed", "1", r"\ln(v'%s/v_0)", (-1.0, 1.0), False),
-    Quantity("ln_e", "logarithm of the restitution", "1", r"\ln e%s", (-1.0, -0.1), False),
-    Quantity("mean_ln_v", "mean of the first", "1", r"\overline{\ln v'}%s", (-0.5, 0.5), False),
-    Quantity("mean_ln_e", "mean of the second", "1", r"\overline{\ln e}%s", (-1, -0.1), False),
-    Quantity("e_slope", "power of the speed that the restitution follows", "1", "b%s", (-0.4, -0.01), False),
+    Quantity("ln_v", "logarithm of the speed over the mean speed", "1", r"\ln(v'%s/v_0)", (-1.0, 1.0)),
+    Quantity("ln_e", "logarithm of the restitution", "1", r"\ln e%s", (-1.0, -0.1)),
+    Quantity("mean_ln_v", "mean of the first", "1", r"\overline{\ln v'}%s", (-0.5, 0.5)),
+    Quantity("mean_ln_e", "mean of the second", "1", r"\overline{\ln e}%s", (-1, -0.1)),
+    Quantity("e_slope", "power of the speed that the restitution follows", "1", "b%s", (-0.4, -0.01)),
     Quantity("alpha_by_e", "exponent by the restitutions alone", "1", r"\alpha_e%s", (0.6, 1.45)),
     Quantity("recovery_power", "elastic recovery by law (3)", "m", r"\delta_{(3)%s}", (1e-6, 1e-4)),
     Quantity("a_crater", "radius of a crater of the ball's radius", "m", r"a_{p%s}", (1e-4, 2e-3)),

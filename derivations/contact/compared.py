@@ -51,7 +51,7 @@ def compared(model: ContactModel, number: str) -> Compared:
         name: str, value: Expr, meaning: str, latex: str, unit: str = "1", least: float = -0.5
     ) -> Quantity:
         said = f"{meaning}: {model.title}"
-        own = Quantity(f"{name}_{model.name}", said, unit, latex, (least, 0.5), least > 0)
+        own = Quantity(f"{name}_{model.name}", said, unit, latex, (least, 0.5))
         made[own] = define(number, own.symbol, value, said, part=next(letters))
         return own
 

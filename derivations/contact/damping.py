@@ -28,7 +28,7 @@ from .quantities import SHARED
 
 VOCABULARY = Vocabulary(
     Quantity("x", "normal approach", "m", "x%s", (1e-6, 1e-4)),
-    Quantity("xdot", "rate of the approach", "m/s", r"\dot{x}%s", (-5.0, 5.0), positive=False),
+    Quantity("xdot", "rate of the approach", "m/s", r"\dot{x}%s", (-5.0, 5.0)),
     Quantity("F", "contact force", "N", "F%s", (1.0, 5000.0)),
     Quantity("F_T", "contact force of discrete elements", "N", "F_{T%s}", (1.0, 5000.0), positive=False),
     Quantity("K_T", "Hertz's stiffness of discrete elements", "N/m^(3/2)", "K_{T%s}", (1e7, 1e10)),
@@ -43,9 +43,9 @@ VOCABULARY = Vocabulary(
     Quantity(
         "q", "how far the damping lowers the force at separation, as a logarithm", "1", "q%s", (0.05, 3.0)
     ),
-    Quantity("s_d", "logarithm of the damping's factor", "1", "s%s", (-0.5, 0.04), positive=False),
-    Quantity("sdot", "rate of that logarithm", "1/s", r"\dot{s}%s", (-1e6, -1e3), positive=False),
-    Quantity("xddot", "acceleration of the approach", "m/s^2", r"\ddot{x}%s", (-1e7, 0.0), positive=False),
+    Quantity("s_d", "logarithm of the damping's factor", "1", "s%s", (-0.5, 0.04)),
+    Quantity("sdot", "rate of that logarithm", "1/s", r"\dot{s}%s", (-1e6, -1e3)),
+    Quantity("xddot", "acceleration of the approach", "m/s^2", r"\ddot{x}%s", (-1e7, 0.0)),
     Quantity("x_s", "approach with that logarithm", "m", "x_{s%s}", (1e-6, 1e-4)),
     Quantity("t_d", "duration of the contact with damping", "s", "t%s", (1e-6, 1e-3)),
     Quantity("x_m", "maximum approach", "m", "x_{m%s}", (1e-5, 1e-4)),

@@ -22,7 +22,7 @@ OWN = (
     Quantity("F_m_hertz", "greatest force by Hertz", "N", r"F_{m,\mathrm{H}%s}", (100.0, 1e4)),
     Quantity("t_hertz", "duration of the contact by Hertz", "s", r"t_{\mathrm{H}%s}", (1e-6, 1e-3)),
     Quantity("e_hertz", "restitution by Hertz", "1", r"e_{\mathrm{H}%s}", (0.99, 1.0)),
-    Quantity("x_p_hertz", "imprint by Hertz", "m", r"x_{p,\mathrm{H}%s}", (0.0, 1e-9), positive=False),
+    Quantity("x_p_hertz", "imprint by Hertz", "m", r"x_{p,\mathrm{H}%s}", (0.0, 1e-9)),
 )
 _WORDS = Vocabulary(*SHARED.values(), *OWN)
 v, e, m_red, x, d, F = SHARED.plain("v e m_red x d F")

@@ -165,8 +165,8 @@ class _Laid:
         named = set[Any]().union(*(side.xreplace(where).free_symbols for side in equation.sides))
         blank = Column(
             new.name, TESTS if k in named else None, Given(), own.unit, own.meaning, own.latex,
-            positive=own.positive, display="%" if new.name.startswith(_PERCENT) else _SHOWN.get(own.unit, ""),
-            **more,
+            positive=bool(own.positive),
+            display="%" if new.name.startswith(_PERCENT) else _SHOWN.get(own.unit, ""), **more,
         )  # fmt: skip
         own_where = where | {symbol: blank.cell, own[k]: blank.cell}
         asked = (needs or {}).get(symbol, ())
