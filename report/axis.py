@@ -49,6 +49,10 @@ def singular(rows: str) -> str:
     return rows[:-2] if re.search(f"{_LONGER}es$", rows) else rows.removesuffix("s") or rows
 
 
+def _called(symbol: str) -> cached_property[str]:
+    return cached_property(lambda axis: str(getattr(axis, symbol).name))
+
+
 @dataclass(frozen=True)
 class Axis:
     """An index set whose rows come with the data, such as the tests of a campaign."""
@@ -59,22 +63,16 @@ class Axis:
     """The running number of a row in formulas, ``k``."""
     size: Symbol
     """How many rows there are: the upper limit of sums over the axis."""
+    index_name, size_name = _called("index"), _called("size")
+    """What both are called."""
+    is_given: ClassVar[bool] = True
+    """Whether its rows come with the data."""
     _WORDS: ClassVar[tuple[str, ...]] = ("index_name", "size_name")
 
     @property
     def row(self) -> str:
         """What one of its rows is called: ``test`` of ``tests``."""
         return singular(self.name)
-
-    @cached_property
-    def index_name(self) -> str:
-        """What the index is called."""
-        return str(self.index.name)
-
-    @cached_property
-    def size_name(self) -> str:
-        """What its size is called."""
-        return str(self.size.name)
 
     @property
     def words(self) -> dict[str, Any]:
@@ -112,11 +110,6 @@ class Axis:
         """The axes that its rows are made of."""
         return ()
 
-    @property
-    def is_given(self) -> bool:
-        """Whether its rows come with the data."""
-        return not self.parents
-
     def grouped(self, axes: Iterable[Axis]) -> Iterator[MemberAxis]:
         """Those of some index sets that have its rows in groups: a formula on it may name a row's group."""
         return (each for each in axes if isinstance(each, MemberAxis) and each.of == self)
@@ -142,6 +135,7 @@ class _Resting(Axis):
     """Rows that are made of those of another axis."""
 
     of: Axis
+    is_given = False
 
     @property
     def parents(self) -> tuple[Axis, ...]:
@@ -206,6 +200,7 @@ class RepeatAxis(_Resting):
     """A number of rows, counted by `step` = 1, 2, ..., for each row of another axis."""
 
     step: Symbol
+    step_name = _called("step")
     count: str
     """Name of the given scalar that says how many, the same for all."""
     _WORDS = (*Axis._WORDS, "step_name", "count")
@@ -214,11 +209,6 @@ class RepeatAxis(_Resting):
     def maps(self) -> dict[Symbol, Axis]:
         """The row's own number, and all that its parent's row may name."""
         return {self.index: self, **self.of.maps}
-
-    @cached_property
-    def step_name(self) -> str:
-        """What the running number is called."""
-        return str(self.step.name)
 
     @property
     def ordinals(self) -> tuple[Symbol, ...]:
@@ -246,23 +236,15 @@ class CountedAxis(Axis):
     """A number of rows, counted by `step` = 1, 2, ..., whatever the data: the points of a curve."""
 
     step: Symbol
+    step_name = _called("step")
     number: int
+    is_given = False
     _WORDS = (*Axis._WORDS, "step_name", "number")
-
-    @cached_property
-    def step_name(self) -> str:
-        """What the running number is called."""
-        return str(self.step.name)
 
     @property
     def ordinals(self) -> tuple[Symbol, ...]:
         """The running number."""
         return (self.step,)
-
-    @property
-    def is_given(self) -> bool:
-        """They do not."""
-        return False
 
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:
@@ -281,6 +263,7 @@ class MemberAxis(_Resting):
 
     group: Symbol
     """The index of the groups, in whose formulas alone such sums stand."""
+    group_name = _called("group")
     by: str
     """The column of words that says of each row to which group it belongs."""
     _WORDS = (*Axis._WORDS, "group_name", "by")
@@ -289,11 +272,6 @@ class MemberAxis(_Resting):
     def maps(self) -> dict[Symbol, Axis]:
         """The row's own number and that of the row that it repeats; its group is known to the sheet."""
         return {self.index: self, self.of.index: self.of}
-
-    @cached_property
-    def group_name(self) -> str:
-        """What the index of the groups is called."""
-        return str(self.group.name)
 
     @property
     def parts(self) -> tuple[tuple[str, str], ...]:
@@ -311,6 +289,7 @@ class GroupAxis(Axis):
     """Groups of another axis' rows, one for each word of a column, in the order in which these appear."""
 
     members: MemberAxis
+    is_given = False
 
     @property
     def row(self) -> str:
