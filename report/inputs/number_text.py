@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, degrees, examples, misfit, parse_unit
 from ..distribution import Error
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
     from ...derivations.unit_text import ParsedUnit
     from ..messages.errors import Findings, Location
-    from ..quantity import Bounds
+    from ..workbook import Measured, Parameter
+
+    Declared = Measured | Parameter
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
@@ -32,26 +34,6 @@ _LONGEST = 100
 _TOP = 300
 _LARGEST = Fraction(10) ** _TOP
 _SMALLEST = 1 / _LARGEST
-
-
-class Declared(Protocol):
-    """What a workbook says of an input."""
-
-    @property
-    def name(self) -> str:
-        """The cell name."""
-
-    @property
-    def unit(self) -> str:
-        """The SI unit."""
-
-    @property
-    def meaning(self) -> str:
-        """What it is."""
-
-    @property
-    def bounds(self) -> Bounds:
-        """What values are allowed, in SI."""
 
 
 class NumberError(ValueError):
