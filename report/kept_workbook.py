@@ -42,7 +42,7 @@ def known_workbook(name: str, whole: Callable[[], Workbook]) -> Workbook:
     data = kept("workbook", [name], make)
     if data is None:
         return whole()
-    told = of_data(data, _Told)
+    told: Any = of_data(data, _Told)
     known = {name: getattr(told, name) for name in _DATA}
     known |= {name: function(name) if name in told.functions else None for name in _FUNCTIONS}
     return partly(Workbook, known | dict.fromkeys(_EMPTY, ()), whole)

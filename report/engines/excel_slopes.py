@@ -17,7 +17,7 @@ import numpy as np
 from sympy import Add, Expr, Integer, Matrix, Mul, Symbol, eye
 
 from ..cells.grid import LONGEST, SLOPES, CellBlock, FilledDown, Place
-from ..plan.adjoints import Adjoint, Grouping, Share, Term, adjoints
+from ..plan.adjoints import Adjoint, Grouping, ReversePass, Share, Term
 from ..plan.derivatives import derivatives
 from ..plan.kept import as_data
 from ..plan.nodes import Leaf, Part, Plan
@@ -60,11 +60,9 @@ class Slopes:
             if isinstance(axis, RepeatAxis)
         }
         given = (c for c in sheet.columns if isinstance(c.rule, Given) and not c.rule.u_of)
-        self.adjoints = adjoints(
+        self.adjoints = ReversePass(
             made.nodes,
-            {column.name: _name(column.axis) for column in sheet.columns},
-            [name for name in results if name in sheet and not isinstance(sheet[name].rule, Given)],
-            [tuple(loop.names) for loop in sheet.loops],
+            [loop.names for loop in sheet.loops],
             {column.name for column in sheet.columns if isinstance(column.rule, Iterated)},
             self.repeats,
             {
@@ -75,6 +73,8 @@ class Slopes:
                 if isinstance(axis, GroupAxis)
             },
             {name for name, part in self.parts.items() if any(leaf.index for leaf in self.named(part))},
+        ).adjoints(
+            [name for name in results if name in sheet and not isinstance(sheet[name].rule, Given)],
             {column.name for column in given if not sheet.bounds[column.name].integer},
         )
         self.axes = {axis.name: axis for axis in sheet.axes}

@@ -18,7 +18,7 @@ engines print or compute it.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import InitVar, dataclass, field, replace
 from typing import Literal, NamedTuple
 
 from ..cells.grid import Product
@@ -126,53 +126,6 @@ class Adjoints:
     """Of each result that can be followed, by the given columns that it rests on."""
 
 
-def adjoints(
-    nodes: Sequence[NodeDerivatives],
-    axes: Mapping[str, str | None],
-    results: Iterable[str],
-    loops: Sequence[Sequence[str]],
-    iterated: Collection[str],
-    repeats: Mapping[str, tuple[str, str]],
-    groups: Mapping[str, Grouping],
-    indexed: Collection[str],
-    given: Collection[str],
-) -> Adjoints:
-    """Lead results backwards.
-
-    Parameters
-    ----------
-    nodes : sequence of NodeDerivatives
-        Of the derivatives; of loops, the last pass counts.
-    axes : mapping of str to str or None
-        The axis of every column.
-    results : iterable of str
-        Columns.
-    loops : sequence of sequence of str
-        The columns of each loop.
-    iterated : collection of str
-        Those of them that are iterated.
-    repeats : mapping of str to (str, str)
-        Axes that repeat each row of another one, with that one and the index by which they name its rows.
-    groups : mapping of str to Grouping
-        The axes of groups.
-    indexed : collection of str
-        The parts that name cells of rows that are not their own.
-    given : collection of str
-        What derivatives are asked for by.
-    """
-    making = _ReversePass(nodes, axes, loops, iterated, repeats, groups, indexed)
-    ways: dict[str, dict[str, tuple[Product, ...]]] = {}
-    for result in results:
-        kept = dict(making.made), dict(making.folds), dict(making.heads)
-        try:
-            found = making.ways(result)
-        except Unfollowed:
-            making.made, making.folds, making.heads = kept
-            continue
-        ways[result] = {name: own for name, own in found.items() if name in given}
-    return Adjoints(tuple(_needed(making.made, ways)), ways)
-
-
 def _needed(
     made: Mapping[str, Adjoint], ways: Mapping[str, Mapping[str, Iterable[Product]]]
 ) -> list[Adjoint]:
@@ -215,25 +168,43 @@ def _settled(name: str) -> str:
     return name.partition("~")[0]
 
 
-class _ReversePass:
-    def __init__(
-        self,
-        nodes: Sequence[NodeDerivatives],
-        axes: Mapping[str, str | None],
-        loops: Sequence[Sequence[str]],
-        iterated: Collection[str],
-        repeats: Mapping[str, tuple[str, str]],
-        groups: Mapping[str, Grouping],
-        indexed: Collection[str],
-    ) -> None:
-        self.nodes = {node.name: node for node in nodes if "~" not in node.name}
+@dataclass
+class ReversePass:
+    """Leads results backwards."""
+
+    derived: InitVar[Iterable[NodeDerivatives]]
+    """Of the derivatives; of loops, the last pass counts."""
+    loops: InitVar[Iterable[Iterable[str]]]
+    """The columns of each loop."""
+    iterated: Collection[str]
+    """Those of them that are iterated."""
+    repeats: Mapping[str, tuple[str, str]]
+    """Axes that repeat each row of another one, with that one and the index by which they name its rows."""
+    groups: Mapping[str, Grouping]
+    """The axes of groups."""
+    indexed: Collection[str]
+    """The parts that name cells of rows that are not their own."""
+
+    def __post_init__(self, derived: Iterable[NodeDerivatives], loops: Iterable[Iterable[str]]) -> None:
+        self.nodes = {node.name: node for node in derived if "~" not in node.name}
         self.order = list(self.nodes)
-        self.axes, self.iterated = axes, set(iterated)
-        self.repeats, self.groups, self.indexed = repeats, groups, set(indexed)
         self.loop_of = {name: n for n, loop in enumerate(loops) for name in loop}
         self.made: dict[str, Adjoint] = {}
         self.folds: dict[int, _LoopClosure] = {}
         self.heads: dict[str, _PendingTerms] = {}
+
+    def adjoints(self, results: Iterable[str], given: Collection[str]) -> Adjoints:
+        """Lead columns backwards, to those of what is given that derivatives are asked for by."""
+        ways: dict[str, dict[str, tuple[Product, ...]]] = {}
+        for result in results:
+            kept = dict(self.made), dict(self.folds), dict(self.heads)
+            try:
+                found = self.ways(result)
+            except Unfollowed:
+                self.made, self.folds, self.heads = kept
+                continue
+            ways[result] = {name: own for name, own in found.items() if name in given}
+        return Adjoints(tuple(_needed(self.made, ways)), ways)
 
     # --- names
 
@@ -246,6 +217,7 @@ class _ReversePass:
         return self.loop_of.get(self.nodes[name].of)
 
     def add(self, quantity: Adjoint) -> str:
+        """Have a quantity; returns its name."""
         self.made[quantity.name] = quantity
         return quantity.name
 
@@ -456,6 +428,7 @@ class _ReversePass:
         terms: Sequence[Term],
         found: dict[tuple[str, str | None], str],
     ) -> str:
+        """Have the derivatives of a column's rows by what they name; returns its name."""
         made = f"d {result} / d {name}{f'[{index}]' if index else ''} along {self.axis(result)}"
         found[name, index] = self.add(Adjoint(made, result, name, self.axis(result), tuple(terms)))
         return made
