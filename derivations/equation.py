@@ -167,10 +167,16 @@ class Derivation:
 
     @classmethod
     def of(
-        cls, claim: Equation, premises: tuple[Equation, ...], eliminate: tuple[Expr, ...], says: str
+        cls,
+        claim: Equation,
+        premises: tuple[Equation, ...],
+        eliminate: tuple[Expr, ...],
+        says: str,
+        multiplier: Expr | None = None,
+        after: tuple[Step, ...] = (),
     ) -> Derivation:
-        """Make a chain of one step."""
-        return cls((Step(claim, premises, eliminate, says),))
+        """Make a chain of one step, `after` others."""
+        return cls((*after, Step(claim, premises, eliminate, says, multiplier)))
 
     @property
     def claim(self) -> Equation:

@@ -16,7 +16,7 @@ from dataclasses import replace
 from sympy import Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step, define
+from .equation import Derivation, Equation, Kind, define
 from .soft_impact import LEDGER as PAPER
 from .soft_impact import ratio_step, v, x_m, x_m_of_test
 from .symbols import VOCABULARY, k
@@ -298,11 +298,8 @@ def _entries() -> tuple[Equation | Derivation, ...]:
         speed_scale,
         coefficient,
         Derivation.of(approach, (coefficient, work), (C, XM[k]), "Put the coefficient (L31) into (L3)."),
-        Derivation(
-            (
-                ratio_step,
-                Step(depth, (ratio_step.claim,), (XP[k],), "Solve the energy ratio for the depth."),
-            )
+        Derivation.of(
+            depth, (ratio_step.claim,), (XP[k],), "Solve the energy ratio for the depth.", after=(ratio_step,)
         ),
         *(
             Derivation.of(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step, define
+from .equation import Derivation, Equation, Kind, define
 from .normal_equation import normal_equation
 from .symbols import VOCABULARY, q
 
@@ -122,16 +122,12 @@ LOG_FIT = (
 )
 LIN_FIT = (
     Derivation.of(lin_scale, (_normal_C,), (C,), "The normal equation is linear in C."),
-    Derivation(
-        (
-            Step(
-                alpha_lin,
-                (_normal_C, _normal_alpha),
-                (C,),
-                "Put the best C in; what is left is a multiple of the equation.",
-                multiplier=-Sum(_power, _all) / (2 * C * x_ref**alpha * F_ref),
-            ),
-        )
+    Derivation.of(
+        alpha_lin,
+        (_normal_C, _normal_alpha),
+        (C,),
+        "Put the best C in; what is left is a multiple of the equation.",
+        multiplier=-Sum(_power, _all) / (2 * C * x_ref**alpha * F_ref),
     ),
 )
 

@@ -318,19 +318,13 @@ LEDGER = Ledger(
         Derivation.of(eq10a, (_one_test(eq6.brief, k),), (m_red,), "Write (6) for test k."),
         Derivation.of(eq10b, (_one_test(eq7.brief, k),), (m_red,), "Write (7) for test k."),
         Derivation.of(eq10c, (_one_test(eq9, k),), (C,), "Write (9) for test k."),
-        Derivation(
-            (
-                ratio_step,
-                _approach_2,
-                _law_work_1,
-                Step(
-                    eq11,
-                    (eq12b, eq12a, _ratio_1),
-                    (XM[1], XM[2], XP[1]),
-                    "Put both approaches into the energy ratio of test 1 and divide by the approach: only "
-                    "alpha is left.",
-                ),
-            )
+        Derivation.of(
+            eq11,
+            (eq12b, eq12a, _ratio_1),
+            (XM[1], XM[2], XP[1]),
+            "Put both approaches into the energy ratio of test 1 and divide by the approach: only "
+            "alpha is left.",
+            after=(ratio_step, _approach_2, _law_work_1),
         ),
         Derivation((ratio_step, _approach_2)),
         Derivation((_law_work_1,)),
@@ -348,16 +342,8 @@ LEDGER = Ledger(
         ),
         Derivation.of(x_m_of_test, (eq6.brief,), (m_red,), "Solve (6) for the maximum approach."),
         Derivation.of(Cprime_of_test, (eq7.brief,), (m_red,), "Solve (7) for the maximum force."),
-        Derivation(
-            (
-                Step(
-                    root_form,
-                    (reciprocal, eq11),
-                    (u,),
-                    "Multiply (11) by (beta + 1) u.",
-                    multiplier=(beta + 1) * u,
-                ),
-            )
+        Derivation.of(
+            root_form, (reciprocal, eq11), (u,), "Multiply (11) by (beta + 1) u.", multiplier=(beta + 1) * u
         ),
         *alpha_root.ENTRIES,
         *generated_points.ENTRIES,

@@ -23,7 +23,7 @@ from __future__ import annotations
 from sympy import Integral, Rational, Symbol, log
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Ledger, Step, define
+from ..equation import Derivation, Equation, Kind, Ledger, define
 from ..vocabulary import Quantity, Vocabulary
 from . import damping
 from .quantities import SHARED
@@ -270,15 +270,11 @@ LEDGER = Ledger(
         ),
         Derivation.of(loss, (friction_c, friction_r, plastic), (W_c, W_r, W_p), "Add the three works."),
         undamped_r,
-        Derivation(
-            (
-                Step(
-                    like_3,
-                    (imprint, approach, undamped_c, undamped_r),
-                    (x_p, x_m, C_u, beta_u),
-                    "Let the other material take up the shares.",
-                ),
-            )
+        Derivation.of(
+            like_3,
+            (imprint, approach, undamped_c, undamped_r),
+            (x_p, x_m, C_u, beta_u),
+            "Let the other material take up the shares.",
         ),
     ),
     vocabulary=VOCABULARY,

@@ -429,19 +429,15 @@ LEDGER = Ledger(
             (m_red, W),
             "Put (L104) into (L102) and solve for the approach.",
         ),
-        Derivation(
-            (
-                Step(
-                    returned,
-                    (left, work_compression, work_rebound),
-                    (g, W),
-                    "Both branches do the same elastic work.",
-                    multiplier=c**2 / (m_red * v_0**2),
-                ),
-            )
+        Derivation.of(
+            returned,
+            (left, work_compression, work_rebound),
+            (g, W),
+            "Both branches do the same elastic work.",
+            multiplier=c**2 / (m_red * v_0**2),
         ),
-        Derivation(
-            (Step(by_decay, (decay, left, returned), (g, e_o), "Put the factor in.", multiplier=Integer(-1)),)
+        Derivation.of(
+            by_decay, (decay, left, returned), (g, e_o), "Put the factor in.", multiplier=Integer(-1)
         ),
         Derivation.of(back, (decay, left), (q, g), "Solve for the restitution."),
         Derivation.of(asked, (decay, left), (q, g), "Solve for the number."),
@@ -454,16 +450,12 @@ LEDGER = Ledger(
         ),
         Derivation.of(deep, (work_fallen,), (K,), "Integrate both sides."),
         Derivation.of(lasting, (passing,), (t,), "Take out of the integral what does not change."),
-        Derivation(
-            (
-                Step(
-                    peak_speed,
-                    (stationary, peak_approach),
-                    (K,),
-                    "Put the stiffness that dF/dt = 0 gives into (L107).",
-                    multiplier=n * u_F / ((n + 1) * x_F ** (n + 1)),
-                ),
-            )
+        Derivation.of(
+            peak_speed,
+            (stationary, peak_approach),
+            (K,),
+            "Put the stiffness that dF/dt = 0 gives into (L107).",
+            multiplier=n * u_F / ((n + 1) * x_F ** (n + 1)),
         ),
         Derivation(
             (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Step
+from ..equation import Derivation, Equation
 from ..soft_impact import XM, XP, E
 from ..symbols import k
 from ..vocabulary import Quantity, Vocabulary
@@ -60,26 +60,16 @@ LANKARANI_1994 = ContactModel(
     source="H M Lankarani, P E Nikravesh, Nonlinear Dynamics 5 (1994) 193-207, 10.1007/BF00045676",
     quantities=OWN,
     entries=(
-        Derivation(
+        Derivation.of(
+            imprint,
             (
-                paper.ratio_step,
-                Step(
-                    imprint,
-                    (
-                        paper.ratio.at(
-                            {
-                                XM[k]: x_m,
-                                XP[k]: x_p,
-                                E[k]: e,
-                                paper.alpha: hertz.hertz,
-                                paper.beta: hertz.hertz,
-                            }
-                        ),
-                    ),
-                    (x_p,),
-                    "Read it for Hertz's exponent on both branches, and solve for the imprint.",
+                paper.ratio.at(
+                    {XM[k]: x_m, XP[k]: x_p, E[k]: e, paper.alpha: hertz.hertz, paper.beta: hertz.hertz}
                 ),
             ),
+            (x_p,),
+            "Read it for Hertz's exponent on both branches, and solve for the imprint.",
+            after=(paper.ratio_step,),
         ),
         Derivation.of(
             by_force,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sympy.core.parameters import evaluate
 
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Step, define
+from ..equation import Derivation, Equation, define
 from ..fit_checks import FREE
 from ..soft_impact import XM, XP, E
 from ..symbols import VOCABULARY as PAPER
@@ -73,16 +73,12 @@ POWER_LAW = ContactModel(
         ),
     },
     entries=(
-        Derivation(
-            (
-                paper.ratio_step,
-                Step(
-                    imprint,
-                    (paper.ratio.at({XM[k]: x_m, XP[k]: x_p, E[k]: e}),),
-                    (x_p,),
-                    "Solve it for the imprint.",
-                ),
-            )
+        Derivation.of(
+            imprint,
+            (paper.ratio.at({XM[k]: x_m, XP[k]: x_p, E[k]: e}),),
+            (x_p,),
+            "Solve it for the imprint.",
+            after=(paper.ratio_step,),
         ),
         lasting,
         without,
