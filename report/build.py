@@ -224,6 +224,11 @@ def _made(
             with timed("waiting for proofs"):
                 study.proof_data = proving.result()
         proved = study.proved
+        if study.inputs.published_u:
+            from .referee.uncertain import compare_uncertainties
+
+            beside = compare_uncertainties(proved.inputs, proved.values, study.step)
+            proved = replace(proved, comparisons_u=beside)
         content = b""
         if "xlsx" in formats:
             study.step("writing report.xlsx")
@@ -241,11 +246,6 @@ def _made(
             finished = replace(finished, referee=referee, comparisons=comparisons)
             with timed("figures"):
                 pictures |= _pictures(study, finished, formats, finished.workbook.figures)
-        if study.inputs.published_u:
-            from .referee.uncertain import compare_uncertainties
-
-            beside = compare_uncertainties(finished.inputs, finished.values, study.step)
-            finished = replace(finished, comparisons_u=beside)
     with timed("writing"):
         _write(Issued(finished, pictures, source, content), stage, formats, study.step)
     return finished

@@ -17,8 +17,9 @@ from loopsheet.report.cells.layout import rows_of
 from loopsheet.report.cells.values import CODES, Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
-from loopsheet.report.engines.excel_formulas import _SETTLED, _UNSETTLED
+from loopsheet.report.engines.excel_formulas import _UNSETTLED
 from loopsheet.report.engines.excel_loops import PASSES, pass_columns, pass_name
+from loopsheet.report.engines.excel_values import STAYS
 from loopsheet.report.engines.numpy import Program
 from loopsheet.report.judge.engines import EPS, Judge
 from loopsheet.report.judge.readers import Reading
@@ -145,7 +146,7 @@ def _passes_too_few(campaign: Campaign, judge: Judge, name: str) -> bool:
         for column in loop.iterated
         for pair in zip(*(values[pass_name(column.name, PASSES - back)] for back in (1, 0)), strict=True)
     ]
-    return any(new is not None and abs(new - old) * _SETTLED > abs(new) for old, new in last)
+    return any(new is not None and abs(new - old) * STAYS > abs(new) for old, new in last)
 
 
 def _steps_beyond(campaign: Campaign, judge: Judge, name: str, row: int) -> bool:

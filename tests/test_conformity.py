@@ -483,3 +483,29 @@ def test_a_value_in_the_guard_band_is_not_printed_as_its_end(
     said = told(capsys, "x_p[1]", campaign)
     assert "acceptance limits at least 22.60 um" in said
     assert "no decision on x_p[1]: it lies in the guard band" in said
+
+
+LINE = """from loopsheet import Method, fit, measured, unknown
+
+class Line(Method, headline="b"):
+    "A line."
+    x = measured("1", "abscissa")
+    y = measured("mm", "ordinate")
+    a, b = unknown("intercept", "mm"), unknown("slope", "mm")
+    line = fit(y, a + b * x)
+"""
+
+
+def test_a_limit_of_what_has_no_budget_in_the_workbook_is_told_there(tmp_path: Path) -> None:
+    """Of the scatter of a fit only draws know how it is distributed: there are no formulas for it."""
+    (tmp_path / "workbook.py").write_text(LINE, encoding="utf-8")
+    rows = "".join(f"{n},{n}.0,{2 * n + (-1) ** n * 0.25}\n" for n in range(1, 7))
+    (tmp_path / "measurements.csv").write_text(f"test,x [1],y [mm]\n{rows}", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    stated = '[uncertainty]\ny = "u = 0.2 mm"\n[limits]\nline_s = "<= 0.2 mm"\n'
+    (tmp_path / "report.toml").write_text(toml + stated, encoding="utf-8")
+    main(["build", str(tmp_path), "--to", "xlsx"])
+    book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")["uncertainty"]
+    told = [str(row[0].value) for row in book.iter_rows()]
+    after = told.index("limits of cells without a budget here, as issued") + 1
+    assert told[after].startswith("line_s does not conform: it lies outside of the tolerance limits")

@@ -17,6 +17,7 @@ from openpyxl.worksheet.formula import ArrayFormula
 
 from loopsheet.derivations.vocabulary import with_index
 from loopsheet.report import stages
+from loopsheet.report.build import build
 from loopsheet.report.cells.grid import Grid, letters
 from loopsheet.report.document.notation import fragments
 from loopsheet.report.engines import excel_grid
@@ -197,6 +198,19 @@ def test_published_values_stand_beside_live_ones(book: Any, shown: Any, report: 
     assert live["L6"].value == '=IF($I$6="differs",IF(ROUND($F$6,3)=$K$6,"yes","no"),"no")'
     depth = next(row for row in range(6, 40) if now.cell(row, 2).value == "x_m")
     assert live.cell(depth, 6).value == "=IF(ISNUMBER(tests!$I$8),tests!$I$8,tests!$I$8)"
+
+
+def test_published_uncertainties_stand_below(tmp_path: Path) -> None:
+    """As issued, for they are no cells of the sheet; the page has a table of them."""
+    build(Study(PAPER.parent / "gum_h1"), tmp_path / "out", ("xlsx", "json"))
+    rows = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")["published"].iter_rows(min_row=6)
+    told = [[cell.value for cell in row] for row in rows]
+    (first,) = (n for n, row in enumerate(told) if str(row[0]).startswith("Published uncertainties"))
+    values = json.loads((tmp_path / "out" / "values.json").read_text())["published_u"]
+    assert [(row[1], row[4]) for row in told[first + 1 :]] == [
+        (each["cell"], each["printed"]) for each in values
+    ]
+    assert next([row[1], *row[4:6]] for row in told if row[1] == "U99(l)") == ["U99(l)", "93", "99"]
 
 
 def test_equations_and_their_proofs(shown: Any) -> None:

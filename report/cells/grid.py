@@ -284,6 +284,8 @@ class Grid:
     slopes: Mapping[str, Mapping[str, tuple[Product, ...]]] = field(default_factory=dict)
     """By the name of a result, by that of what is given: the products of blocks, in SI, whose sum its
     derivative is. Nothing where there are no formulas."""
+    passes: int = 0
+    """How many a loop has."""
 
     @cached_property
     def by_name(self) -> Mapping[str, CellBlock]:

@@ -146,8 +146,9 @@ class Pair:
 
     @property
     def index(self) -> str:
-        """``1–2``."""
-        return index_text(self.comparison.published.index).replace("-", "–")
+        """``1–2``; the word that stands for it."""
+        published = self.comparison.published
+        return published.called or published.row.replace("-", "–")
 
     @property
     def row(self) -> str:

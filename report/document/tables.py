@@ -348,7 +348,8 @@ class Tables:
         """What is published of uncertainties, beside what is computed."""
 
         def told(one: Comparison) -> Inlines | str:
-            return self.rich(one.published.reason) if one.published.reason else one.verdict
+            known = one.as_expected and one.published.reason
+            return self.rich(one.published.reason) if known else one.verdict
 
         def row(one: Comparison) -> dict[str, str]:
             return {"state": "" if one.as_expected else "unexpected"}
@@ -388,12 +389,14 @@ class Tables:
         return joined(told, ", ")
 
     def _source(self, own: Sequence[Contribution], share: float) -> Inlines:
-        """A source; of readings that are one estimate all together."""
-        first, number = own[0].source, len(own)
+        """A source; of readings that are one estimate all together, those of several columns if paired."""
+        first, moved = own[0].source, [each.source.moves[0] for each in own]
         axis = self.report.sheet[first.moves[0][0]].axis
-        if number == 1 or axis is None:
+        if len(own) == 1 or axis is None:
             return Code(first.name), f"\u00a0{_percent(share)}"
-        return Code(first.moves[0][0]), f" ({number}\u00a0{axis.name})\u00a0{_percent(share)}"
+        named = joined([(Code(name),) for name in dict.fromkeys(name for name, *_ in moved)], ", ")
+        rows = {row for _, row, _ in moved}
+        return *named, f" ({len(rows)}\u00a0{axis.name})\u00a0{_percent(share)}"
 
     # --- what is published
 

@@ -25,7 +25,7 @@ from ..sheet import Axis, Column, Given, GroupAxis, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, carried_name, guard, works_on_ranges
-from .excel_loops import PASSES, Pass, names_in, passes_of
+from .excel_loops import Pass, names_in, passes_of
 from .excel_roots import Unrolled, unroll
 from .excel_slopes import Slopes
 from .excel_values import NotPrintable
@@ -68,6 +68,7 @@ class Assembly:
         worded: Mapping[str, Sequence[str]],
         thinned: Collection[str],
         times: int,
+        last: int,
     ) -> None:
         self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
         self.units, self.first, self.results = units, first, results
@@ -94,7 +95,7 @@ class Assembly:
             if isinstance(given.rule, Given)
         }
         self.asked = [column for column in sheet.columns if column.name in asked]
-        self.passes = passes_of(sheet)
+        self.passes, self.last = passes_of(sheet, last), last
         self.carried = {k: v for c in whole.columns for k, v in self.carried_for(c).items()}
 
     def told(self) -> dict[str, Any]:
@@ -108,7 +109,7 @@ class Assembly:
         self.places |= derived.put(lambda axis: self.rooms[axis].next(), steps)
         named = {name: self.places[grid.checked(name)] for name in self.whole.bounds}
         places = Places({**self.places, **named}, {name: self.places[name] for name in named}, self.indices)
-        formulas = Formulas(self.whole, self.plan, self.layouts, places)
+        formulas = Formulas(self.whole, self.plan, self.layouts, places, self.last)
         blocks = [*self.index_blocks(), *self.column_blocks(formulas), *self.step_blocks(formulas)]
         slopes = derived.told(formulas)
         blocks += derived.blocks
@@ -156,7 +157,7 @@ class Assembly:
         for column in self.whole.columns:
             if column.axis is not None and column not in given and column.name not in self.passes:
                 self.put(column, column.name)
-        for number in range(PASSES + 1):
+        for number in range(self.last + 1):
             own = self.in_pass(number)
             for column in self.whole.columns:
                 if column.axis is not None and column.name in own:
@@ -207,7 +208,7 @@ class Assembly:
             return found
         every = (
             (replace(leaf, name=names_in(self.passes, number)(leaf.name)), axis)
-            for number in range(1, PASSES + 1)
+            for number in range(1, self.last + 1)
             for leaf, axis in found.values()
         )
         return {carried_name(leaf): (leaf, axis) for leaf, axis in every}

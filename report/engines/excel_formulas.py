@@ -26,9 +26,9 @@ from ..plan.order import Word
 from ..quantity import Bounds
 from ..sheet import Axis, Column, Given, Iterated, MemberAxis, Reference, RepeatAxis, Sheet
 from .excel import ExcelPrinter, IfError
-from .excel_loops import PASSES, pass_name
+from .excel_loops import pass_name
 from .excel_roots import Auxiliary, Unrolled
-from .excel_values import READY
+from .excel_values import READY, STAYS
 
 _ON_RANGES = (*(f"{word.upper()}(IF(" for word in get_args(Word)), "MINVERSE(", "SMALL(")
 """What works on ranges in formulas: a spreadsheet that is not told so takes the cell of its own row."""
@@ -36,8 +36,6 @@ _ON_RANGES = (*(f"{word.upper()}(IF(" for word in get_args(Word)), "MINVERSE(", 
 _CODE = {status: f'"{code}"' for status, code in CODES.items()}
 _UNSETTLED = '"#STEPS!"'
 """Only a workbook has this code: its steps are columns and come to an end, other engines go on."""
-_SETTLED = 10**12
-"""A last pass that moves a value by a smaller part leaves less than rounding does."""
 _NOT_AVAILABLE = "NA()"
 _SMALLEST = "(2)^(0-1022)"
 """The least positive number with all its digits; spreadsheets hold none below."""
@@ -96,10 +94,14 @@ class Formulas:
     plan : Plan
         Of the sheet.
     layouts : mapping of axis name to Layout
+    passes : int
+        How many each loop has.
     """
 
-    def __init__(self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places) -> None:
-        self.sheet, self.plan, self.layouts, self.places = sheet, plan, layouts, places
+    def __init__(
+        self, sheet: Sheet, plan: Plan, layouts: Mapping[str, Layout], places: Places, passes: int
+    ) -> None:
+        self.sheet, self.plan, self.layouts, self.places, self.passes = sheet, plan, layouts, places, passes
         self.maps = {node.column.name: node for node in plan.every if isinstance(node, Map)}
 
     def checked(self, column: Column, guard: str, groups: Sequence[Grouped] = ()) -> tuple[FilledDown, ...]:
@@ -417,18 +419,19 @@ class Writing:
 
     def iterated(self) -> str:
         """A cell that the last pass has left where it was: an error of its start, or its value."""
+        done = self.formulas.passes
         start, before, last = (
             self.address(Leaf("cells", pass_name(self.column.name, number), self.axis))
-            for number in (0, PASSES - 1, PASSES)
+            for number in (0, done - 1, done)
         )
         gone = none = _CODE[Status.NOROOT]
         lost = f"OR({last}={_CODE[Status.DOMAIN]},{last}={_CODE[Status.OVERFLOW]})"
-        found = f"IF(ABS({last}-{before})*{_SETTLED}<=ABS({last}),{last},{_UNSETTLED})"
+        found = f"IF(ABS({last}-{before})*{STAYS}<=ABS({last}),{last},{_UNSETTLED})"
         failed = f"IF({lost},{{}},{last})"
         for each in self.sheet.loop_of[self.column.name].iterated:
             if each.axis is not None:
                 # A row that is lost on the way takes the loop with it: without it another one would settle.
-                every = (Leaf("cells", pass_name(each.name, number), each.axis) for number in (0, PASSES))
+                every = (Leaf("cells", pass_name(each.name, number), each.axis) for number in (0, done))
                 begun, ended = (
                     "+".join(
                         f"COUNTIF({self.address(leaf, rows=True)},{_CODE[code]})"

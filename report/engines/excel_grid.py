@@ -15,8 +15,8 @@ from ..cells.values import Values
 from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, MemberAxis, Sheet
-from .excel_loops import pass_columns, passes_of
-from .excel_values import auxiliary_values, filled, settles, slope_values, with_passes
+from .excel_loops import PASSES, pass_columns, passes_of
+from .excel_values import auxiliary_values, filled, loops_settle, settles, slope_values, with_passes
 from .numpy import extend
 
 MOST_ROWS = 40_000
@@ -27,6 +27,8 @@ _LONGEST_NAME = 31
 """Characters of a worksheet's name."""
 _TIMES = (2, 4, 8)
 """So many times a root's own steps are laid out, the first that settle all rows as they are."""
+_PASSES = (PASSES, 2 * PASSES, 4 * PASSES)
+"""So many passes a loop has, the first in which it settles as it is."""
 
 
 class TooManyRows(ValueError):
@@ -80,7 +82,7 @@ def grid(
         from .excel_assembly import Assembly
 
         told = worksheets, sheet, values.sheet, whole, layouts, counts, units, first, results, beside
-        return Assembly(*told, thinned, times).told()
+        return Assembly(*told, thinned, times, last).told()
 
     own = [
         layouts[axis.name].labels.tolist()
@@ -100,8 +102,12 @@ def grid(
         thinned,
     )
     hangs_on = repr((names, own, words, sizes))
+    for last in _PASSES:
+        shown = with_passes(every, sheet, last)
+        if loops_settle(shown, sheet, last):
+            break
     for times in _TIMES:
-        parts = [hangs_on, str(times)]
+        parts = [hangs_on, str(times), str(last)]
         told = of_sheet(whole, "formulas of the workbook", parts, partial(make, times))
         found = [auxiliary_values(every, root) for root in told["roots"]]
         if all(settles(every, root, own) for root, own in zip(told["roots"], found, strict=True)):
@@ -109,13 +115,12 @@ def grid(
     axes = dict(zip(worksheets.values(), whole.axes, strict=True))
     slopes = slope_values(values, sheet, told["slopes"])
     steps = dict(chain.from_iterable(own.items() for own in found))
-    shown = with_passes(every, sheet)
     blocks = filled(of_data(told["blocks"], tuple[CellBlock, ...]), steps, shown, slopes)
     notes = of_data(told["notes"], dict[str, Place])
     words_at = of_data(told["words"], dict[str, tuple[Place, ...]])
     ways = of_data(told["slopes"]["ways"], dict[str, dict[str, tuple[Product, ...]]])
     groups = of_data(told["groups"], dict[str, tuple[Grouped, ...]])
-    return Grid(tuple(blocks), axes, drawn, notes, words_at, groups, ways)
+    return Grid(tuple(blocks), axes, drawn, notes, words_at, groups, ways, last)
 
 
 def with_first_pass(drawn: Drawn | None, sheet: Sheet) -> Drawn | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sympy import Basic
 
 PASSES = 20
-"""How many a workbook has; a step that does not come near by a tenth each time would need more."""
+"""How many a workbook has; twice or four times as many where some loop does not settle in them as issued."""
 
 
 def pass_name(name: str, number: int) -> str:
@@ -56,12 +56,12 @@ class Pass:
         return pass_name(self.of, min(self.number, 1))
 
 
-def passes_of(sheet: Sheet) -> dict[str, Pass]:
-    """The columns of all passes of a sheet's loops, by name."""
+def passes_of(sheet: Sheet, last: int = PASSES) -> dict[str, Pass]:
+    """The columns of so many passes of a sheet's loops, by name."""
     found = (
         Pass(loop.name, column.name, number)
         for loop in sheet.loops
-        for number in range(PASSES + 1)
+        for number in range(last + 1)
         for column in (loop.columns if number else loop.iterated)
     )
     return {each.name: each for each in found}
@@ -92,7 +92,7 @@ def pass_columns(sheet: Sheet, last: int = 1) -> tuple[Column, ...]:
     tuple of Column
         Declared in the order of what is passed: of several errors, cells inherit the same as those.
     """
-    of = passes_of(sheet)
+    of = passes_of(sheet, last)
     declared = {column.name: n for n, column in enumerate(sheet.columns)}
     every = (column for loop in sheet.loops for column in _of_loop(loop, last))
     return tuple(sorted(every, key=lambda column: declared[of[column.name].of]))

@@ -31,6 +31,10 @@ SETTLED = 10**7
 """A last step smaller than this part of the unknown leaves, by its order, less than rounding does."""
 
 
+STAYS = 10**12
+"""A last pass that moves a value by a smaller part leaves less than rounding does."""
+
+
 class NotPrintable(ValueError):
     """An expression has no spreadsheet formula; half a formula is never printed."""
 
@@ -107,10 +111,11 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     return shown | {root["check"]: tuple(check)}
 
 
-def with_passes(values: Values, sheet: Sheet) -> Values:
+def with_passes(values: Values, sheet: Sheet, last: int = PASSES) -> Values:
     """The values with those of the passes of a sheet's loops that have no columns of their own.
 
-    `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`.
+    `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`. `last`: up
+    to which pass.
     """
     first = [each for each in passes_of(sheet).values() if each.number == 1]
     if not first:
@@ -124,12 +129,25 @@ def with_passes(values: Values, sheet: Sheet) -> Values:
     program = Program.of(values.sheet, tuple(name for name in values.value if name not in ours))
     laid, here = Laid(values.sheet, dict(values.layouts)), values
     value, status = dict(values.value), dict(values.status)
-    for number in range(2, PASSES + 1):
+    for number in range(2, last + 1):
         here = again(here, begun, program, laid)
         for each in first:
             name = pass_name(each.of, number)
             value[name], status[name] = here.value[each.name], here.status[each.name]
     return replace(values, value=value, status=status)
+
+
+def loops_settle(values: Values, sheet: Sheet, last: int) -> bool:
+    """Whether every iterated cell that has a value stays in the last pass, as a workbook asks.
+
+    `values`: from :func:`with_passes`, as are the others.
+    """
+    for column in (column for loop in sheet.loops for column in loop.iterated):
+        before, after = (values.value[pass_name(column.name, last - back)] for back in (1, 0))
+        moved = np.abs(after - before) * STAYS > np.abs(after)
+        if np.any(moved & (values.status[column.name] == Status.OK)):
+            return False
+    return True
 
 
 def settles(values: Values, root: Mapping[str, Any], found: Mapping[str, Sequence[float | str]]) -> bool:

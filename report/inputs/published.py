@@ -94,12 +94,19 @@ class PublishedValue:
     about: About | None = None
     """What it tells of a cell besides its value, then `cell` is how that is written; None for a value."""
     word: str = ""
-    """What stands for its row in the file, if no number does."""
+    """What stands for its row in the file, if no number does, as long as nobody knows which row that is."""
+    called: str = ""
+    """The word that does."""
+
+    @property
+    def row(self) -> str:
+        """Its index as the file says it: ``1-2``, ``S-18``; empty for a scalar."""
+        return self.called or self.word or index_text(self.index)
 
     def of_words(self, words: Words) -> PublishedValue:
         """The same with the row that its word stands for; one that stands for none is told later."""
         row = row_of(self.word, words.get(self.columns[0], {})) if self.word else None
-        return self if row is None else replace(self, index=row, word="")
+        return self if row is None else replace(self, index=row, word="", called=self.word)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -280,7 +287,7 @@ def check_published(
         of_rows = value.columns if value.about and value.about.kind == "r" else value.columns[:1]
         for name in of_rows if "index" not in value.unread and id(value) not in gone else ():
             if value.word or value.index not in cells[name][1]:
-                at, text = value.places.get("index"), value.word or index_text(value.index)
+                at, text = value.places.get("index"), value.row
                 known = _indices(cells[name][1], words.get(name, {}))
                 findings.add("LS506", at, name=name, text=text, known=known)
         if value.about and value.about.is_pure:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cells.address import index_text
 from ..charts import BLUE as UNLOADING
 from ..charts import INK
 from ..charts import VERMILION as LOADING
@@ -86,7 +85,7 @@ def _row(one: Comparison, names: dict[str, str]) -> ReachRow:
     assert verdict.high is not None
     printed = published.printed
     centre, unit = float(printed.value), float(2 * printed.half_unit)
-    index = index_text(published.index).replace("-", "–")
+    index = drawable(published.called) or published.row.replace("-", "–")
     symbol = _symbol(name_latex(published.cell, names), published.cell)
     source = drawable(published.source)
     low, high = (float(end - printed.value) / unit for end in printed.interval)

@@ -63,8 +63,8 @@ def _write(book: Any, report: Report, grid: Grid) -> None:
     style, inputs = Style(book), GivenCells(report, grid)
     names = [SCALARS, *([_FIGURES] if charted(report, grid) else []), *grid.axes]
     names += [STEPS] if grid.on(STEPS) else []
-    names += [_PUBLISHED] if report.comparisons else []
-    names += [BUDGETS] if told_budgets(report) else []
+    names += [_PUBLISHED] if report.every_comparison else []
+    names += [BUDGETS] if told_budgets(report) or report.uncertain().conformities else []
     names += [SLOPES] if grid.on(SLOPES) else []
     names += [_CARDS] if report.cards().made else []
     sheets = {name: book.add_worksheet(name, ColumnwiseSheet) for name in [*names, _EQUATIONS]}

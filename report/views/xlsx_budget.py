@@ -19,6 +19,7 @@ from typing import Any
 from ..cells.grid import BUDGETS, LONGEST, CellBlock, Grid, Product, checked, factors, letters
 from ..distribution import DOMINANT, MOST_DOF, SCATTER, Shape
 from ..quantity import behind
+from ..result import conformity
 from ..result.numbers import LEADING, SURE, rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
@@ -86,6 +87,12 @@ def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> dict[
         row = written.write() + 2
         if written.stated is not None:
             stated[budget.cell] = written.stated
+    told = {budget.cell for budget in budgets}
+    others = [each for each in report.uncertain().conformities if each.budget.cell not in told]
+    if others:
+        style.text(sheet, row, 0, "limits of cells without a budget here, as issued", "head")
+    for line, found in enumerate(others, start=row + 1):
+        style.text(sheet, line, 0, conformity.decision(report, found))
     sheet.freeze_panes(3, 1)
     return stated
 

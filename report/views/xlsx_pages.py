@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 from ...derivations.proved import IDENTITY
-from ..cells.address import index_text
 from ..cells.grid import CHECKED, MOST_RESULTS, SCALARS, TOP, CellBlock, Grid, checked, letters
 from ..document.material import Material
 from ..result.result import Comparison, Report
@@ -216,11 +215,15 @@ def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> Non
     for row, comparison in enumerate(report.comparisons, start=5):
         _write_comparison(sheet, style, report, grid, row, comparison)
     last = 4 + len(report.comparisons)
-    mark_errors(sheet, style, 5, 5, last, 5)
+    if report.comparisons:
+        mark_errors(sheet, style, 5, 5, last, 5)
+        sheet.autofilter(3, 0, last, len(_PUBLISHED) - 1)
+    if report.comparisons_u:
+        _write_published_u(sheet, style, report, last + 2)
+        last += 2 + len(report.comparisons_u)
     finding = {"type": "cell", "criteria": "==", "value": '"no"', "format": style("finding")}
     sheet.conditional_format(5, 11, last, 11, finding)
     sheet.freeze_panes(5, 3)
-    sheet.autofilter(3, 0, last, len(_PUBLISHED) - 1)
     sheet.repeat_rows(3, 4)
 
 
@@ -230,7 +233,7 @@ def _write_comparison(
     value, cell = comparison.published, comparison.cell
     given = grid[value.cell].kind == "given"
     printed, place = value.printed, grid[checked(value.cell) if given else value.cell].place
-    for at, words in enumerate((value.source, value.cell, index_text(value.index), printed.unit)):
+    for at, words in enumerate((value.source, value.cell, value.row, printed.unit)):
         style.text(sheet, row, at, words)
     decimals = printed.decimals
     shown = style("number", f"0.{'0' * decimals}" if decimals > 0 else "0")
@@ -264,6 +267,25 @@ def _write_comparison(
     _write_expected(sheet, style, row, comparison, cells, shortened)
     style.text(sheet, row, 12, value.reason, "wrapped")
     sheet.set_row(row, height([(value.reason, 70)]))
+
+
+def _write_published_u(sheet: Any, style: Style, report: Report, row: int) -> None:
+    """Write what is published of uncertainties beside what was computed, below the values."""
+    said = "Published uncertainties, as issued: no cells of the sheet, they do not follow an edit."
+    style.text(sheet, row, 0, said, "head")
+    for line, one in enumerate(report.comparisons_u, start=row + 1):
+        value, printed = one.published, one.published.printed
+        style.text(sheet, line, 0, value.source)
+        style.text(sheet, line, 1, one.cell.address)
+        style.text(sheet, line, 3, printed.unit)
+        style.text(sheet, line, 4, printed.text)
+        style.text(sheet, line, 5, one.again)
+        style.text(sheet, line, 8, one.verdict, "unit")
+        style.text(sheet, line, 9, value.expect or "same")
+        style.text(sheet, line, 10, value.pin.again if value.pin else "")
+        style.text(sheet, line, 11, "yes" if one.as_expected else "no")
+        style.text(sheet, line, 12, value.reason, "wrapped")
+        sheet.set_row(line, height([(value.reason, 70)]))
 
 
 def _write_expected(

@@ -216,7 +216,8 @@ function estimates({ trace }, from) {
   }
   const told = [...found.values()].map((own) => {
     const [{ called, moves: [[column, row], more] }] = own, share = sum(own.map(({ share }) => share));
-    if (own.length > 1) return { called: column, rows: ` (${own.length}\u00a0${trace.declared[column].axis})`, share };
+    const [columns, rows] = [0, 1].map((part) => new Set(own.map(({ moves: [move] }) => move[part]))); // readings that are paired
+    if (own.length > 1) return { called: [...columns].join(", "), rows: ` (${rows.size}\u00a0${trace.declared[column].axis})`, share };
     return { called, rows: "", share, goto: more ? null : trace.address(column, row) };
   });
   return told.sort((a, b) => Math.abs(b.share) - Math.abs(a.share));

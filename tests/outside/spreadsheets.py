@@ -23,9 +23,8 @@ from loopsheet.report.cells.layout import evenly
 from loopsheet.report.cells.values import CODES, Status, Values
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.engines.certified import certified
-from loopsheet.report.engines.excel_formulas import _SETTLED
-from loopsheet.report.engines.excel_loops import PASSES, pass_name, passes_of
-from loopsheet.report.engines.excel_values import with_passes
+from loopsheet.report.engines.excel_loops import pass_name, passes_of
+from loopsheet.report.engines.excel_values import STAYS, with_passes
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.judge.readers import ALWAYS_RECALCULATE
 from loopsheet.report.result.result import Report
@@ -94,7 +93,7 @@ class Delivered:
                 fixed = column.name in self.counts and cells[0] != block.values[0]
                 data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
         first = engine.evaluate(self.whole, self.report.values.given_labels, data, self.program)
-        values = with_passes(first, self.report.sheet)
+        values = with_passes(first, self.report.sheet, self.grid.passes)
         changed = {name for (name, row), value in edits.items() if value != self.grid[name].values[row]}
         return self._as_counted(values, changed)
 
@@ -230,11 +229,11 @@ class Difference:
     wrong: list[str] = field(default_factory=list)
 
 
-def still_moving(sheet: Sheet, values: Values) -> bool:
+def still_moving(sheet: Sheet, values: Values, last: int) -> bool:
     """Whether a loop moves in the last pass of a workbook by more than it takes for settled, or nearly so."""
     for column in (column for loop in sheet.loops for column in loop.iterated):
-        old, new = (values.value[pass_name(column.name, number)] for number in (PASSES - 1, PASSES))
-        if (np.abs(new - old) * 2 * _SETTLED > np.abs(new)).any():
+        old, new = (values.value[pass_name(column.name, number)] for number in (last - 1, last))
+        if (np.abs(new - old) * 2 * STAYS > np.abs(new)).any():
             return True
     return False
 
@@ -251,7 +250,7 @@ def compare(
     """
     found, lost = Difference(), lost_to_differences(values)
     sheet = delivered.report.marks.values.sheet
-    looped, moving = sheet.loop_of.keys(), still_moving(sheet, values)
+    looped, moving = sheet.loop_of.keys(), still_moving(sheet, values, delivered.grid.passes)
 
     def before(column: Column) -> set[str]:
         """What a column rests on; of one that is drawn, what that is drawn of."""
@@ -259,7 +258,10 @@ def compare(
         return {own.name, *(each.name for each in delivered.whole.ancestors(own))}
 
     rules = {column.name: column for column in delivered.whole.columns}
-    rules |= {name: rules[each.rule] for name, each in passes_of(delivered.report.sheet).items()}
+    rules |= {
+        name: rules[each.rule]
+        for name, each in passes_of(delivered.report.sheet, delivered.grid.passes).items()
+    }
     for its, column in rules.items():
         given = isinstance(column.rule, Given)
         place = delivered.grid[checked(its) if given else its].place
