@@ -11,7 +11,7 @@ import pytest
 from loopsheet.derivations.contact import damping
 from loopsheet.derivations.contact.prescribed import AUTHORS, Author
 from loopsheet.report.cells.values import Values
-from loopsheet.report.document.placing import placed_in
+from loopsheet.report.document.writing import placed_in
 from loopsheet.report.impacts.damping import number_by, number_for
 from loopsheet.report.impacts.law import ForceLaw
 from loopsheet.report.impacts.simulation import simulate

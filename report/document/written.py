@@ -31,9 +31,9 @@ def gone(step: Step, names: Mapping[str, str]) -> tuple[str, ...]:
     """LaTeX of what a step eliminates."""
     found: tuple[str, ...] | None = known(step, "gone")
     if found is None:
-        from .writing import gone_of
+        from .math import MathPrinter
 
-        found = gone_of(step, names)
+        found = tuple(map(str, map(MathPrinter(names).doprint, step.eliminate)))
     return found
 
 
@@ -51,7 +51,7 @@ def placed(column: Column, sheet: Sheet, names: Mapping[str, str]) -> Placed:
     """The equation of a column with its places; `names` as for :func:`written`."""
     found: Placed | None = Placed("", ()) if isinstance(column.rule, Given) else known(column, "placed")
     if found is None:
-        from .placing import placed_in
+        from .writing import placed_in
 
         found = placed_in(column, sheet, names)
     return found
