@@ -16,8 +16,7 @@ from ..plan.nodes import Leaf, RootNode
 from ..plan.special import EXACT, in_elementary_terms
 from ..sheet import Axis, Column, Given, Iterated, Root, Sheet
 from .certified import certified, enclosing, slope
-from .mpmath_code import source_of
-from .mpmath_intervals import differences, text_of
+from .mpmath_intervals import differences, source_of, text_of
 from .numpy_texts import terms_of
 
 

@@ -1,17 +1,35 @@
-"""Expressions printed for mpmath's intervals: rounded outwards, and what is exact not at all."""
+"""Expressions printed for mpmath's numbers and its intervals: rounded outwards, what is exact not at all."""
 
 from __future__ import annotations
 
+import linecache
 from collections.abc import Sequence
 from typing import Any
 
-from sympy import And, Basic, Gt, Lt, Ne, Symbol, cos, exp, log, sin, true
+from sympy import And, Basic, Gt, Lt, Ne, Symbol, cos, exp, lambdify, log, sin, true
 from sympy.core.function import Application
 
 from ...derivations.reductions import REDUCTIONS
 from ..plan.nodes import RowOrder, RowSum
 from .interval_functions import Run, running
-from .mpmath_code import source_of
+
+
+def source_of(
+    symbols: Sequence[Symbol], bodies: Sequence[Basic], common: bool, modules: str = "mpmath"
+) -> str:
+    """The text of a function of some symbols that returns a list.
+
+    Parameters
+    ----------
+    bodies : sequence of Basic
+        What it returns.
+    common : bool
+        Whether common parts are computed once.
+    modules : str
+        ``numpy`` for one of arrays.
+    """
+    function = lambdify(symbols, bodies, modules=modules, cse=common)
+    return "".join(linecache.getlines(function.__code__.co_filename))
 
 
 def text_of(symbols: Sequence[Symbol], bodies: Sequence[Basic]) -> str | None:
