@@ -9,8 +9,7 @@ from sympy.integrals.quadrature import gauss_jacobi
 
 from loopsheet.derivations.contact import damping
 from loopsheet.derivations.equation import Equation
-from loopsheet.report.plan.quadrature import _rule, in_nodes
-from loopsheet.report.plan.special import DOUBLE, EXACT
+from loopsheet.report.plan.special import DOUBLE, EXACT, _rule, in_nodes
 from loopsheet.report.sheet import Column, Formula, Sheet, SheetError
 
 x, a = Symbol("x", positive=True), Symbol("a", positive=True)
