@@ -1,7 +1,7 @@
 """Small changes of what is printed with which everything published comes out.
 
 The kinds of change are tried in turn, those that accuse nobody first. Which of them can matter is decided by
-conflicts among the published values (:mod:`.conflicts`); one is dropped only with a certificate.
+conflicts among the published values (:mod:`.search`); one is dropped only with a certificate.
 """
 
 from __future__ import annotations

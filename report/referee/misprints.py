@@ -12,11 +12,10 @@ import numpy as np
 from ..quantity import Printed
 from ..result.verdict import INPUT, Change
 from .campaign import Array
-from .conflicts import Conflict
 from .digits import is_slip, moved, respelt, slips
 from .minimax import Best, best
 from .problem import Box, Problem
-from .search import HOPELESS, LOOKED_INTO, Explained, Search
+from .search import HOPELESS, LOOKED_INTO, Conflict, Explained, Search
 
 RANGE = 10.0
 """A misprinted number is looked for between a tenth and ten times what is printed."""
