@@ -57,8 +57,8 @@ DECLARED = AUTHOR | rooms("cells")
 METHOD = [
     f"report.method.{name}"
     for name in (
-        *("codata", "temperatures", "lines", "fitted", "places", "same_rows", "body", "algebra", "made"),
-        *("errors", "ledger", "shown", "declaring", "words"),
+        *("codata", "temperatures", "lines", "fitted", "places", "same_rows", "body", "algebra", "errors"),
+        *("ledger", "shown", "declaring", "words"),
     )
 ]
 

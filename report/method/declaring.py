@@ -3,15 +3,143 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
+from sympy import Sum
+
 from ...derivations.equation import Ledger
-from ..column import SheetError
-from ..workbook import Workbook
+from ...derivations.vocabulary import Quantity, Vocabulary, spelt
+from ..axis import Axis, CountedAxis, RepeatAxis
+from ..charts import Drawn
+from ..column import Column, Formula, SheetError
+from ..quantity import Bounds
+from ..sheet import Sheet
+from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
 from .body import MethodBody
 from .errors import CURRENT, WatchedBody
-from .made import workbook_of
+
+
+def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
+    """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has.
+
+    Nothing else is let in of an input; a parameter of a fit may be found elsewhere.
+    """
+    low, high = bounds.low, bounds.high
+    known = (low, high) if is_sure else (None, None)
+    if low is None or high is None:
+        (end,) = (each for each in (low, high) if each is not None)
+        far = max(abs(end), 1.0) * (1 if high is None else -1)
+        low, high = sorted((end + far / 2, end + 2 * far))
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
+    return Quantity(*own, bool(column.positive), "", *known)
+
+
+def _words(body: MethodBody, place: int) -> Iterator[str]:
+    """What the example of a table has in its columns of words, in a row from 1."""
+    for axis in body.groups:
+        said = body.examples.get(axis.members.by, "").split()
+        yield said[place - 1] if place <= len(said) else f"S{(place + 1) // 2}"
+
+
+def _table_of(axis: Axis, body: MethodBody, columns: Sequence[Measured]) -> RowTable:
+    """A table of measured rows, with an example of what stands in it."""
+    own = [one for one in columns if one.table == axis.name]
+    groups = tuple(each.members.by for each in body.groups if each.members.of == axis)
+    rows = zip(*(body.examples.get(one.name, "").split() for one in own), strict=False)
+    head = (axis.row, *groups, *(f"{one.name} [{one.unit}]" for one in own))
+    numbered = enumerate(rows, start=1)
+    example = ((str(place), *(_words(body, place) if groups else ()), *row) for place, row in numbered)
+    return RowTable(axis.name, axis.row, 1, groups, (head, *example))
+
+
+def _means(body: MethodBody, results: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The results that are means of a column over the rows of the data, with that column."""
+    of_rows = [each for each in body.columns.values() if each.axis in body.row_axes]
+    means = {Sum(c.cell, (c.axis.index, 1, c.axis.size)) / c.axis.size: c.name for c in of_rows if c.axis}
+    for name in results:
+        rule = body.columns[name].rule
+        if isinstance(rule, Formula) and rule.expression in means:
+            yield name, means[rule.expression]
+
+
+def workbook_of(
+    name: str, body: MethodBody, title: str, source: str, headline: Sequence[str], prose: str
+) -> Workbook:
+    """All that it declares.
+
+    Parameters
+    ----------
+    name : str
+        Of the class.
+    """
+    entries = tuple(body.entries)
+    for each in headline:
+        if each not in body.columns:
+            raise SheetError(f"the headline names {each}, which is not declared", each)
+    for announced in body.announced:
+        if announced not in body.columns:
+            raise SheetError(
+                f"{announced} is announced as unknown, and neither a root nor a fit finds it", announced
+            )
+    if not entries and body.ledger is None:
+        raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
+    columns = body.whole
+    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
+    Sheet((*columns, *curves.columns))  # a name that both have is told now
+    # What nothing but a curve rests on is a result all the same.
+    others = (c for c in columns if not isinstance(c.axis, CountedAxis | RepeatAxis))
+    used = {each.name for c in others for each in sheet.precedents(c) if each.name != c.name}
+    scalars = (c.name for c in columns if c.axis is None and c.equation)
+    last = [each for each in scalars if body.of_fits.get(each, each not in used)]
+    bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
+    limited = (one for one, said in bounds.items() if (said.low, said.high) != (None, None))
+    words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
+    taken = body.ledger or Ledger((), vocabulary=words)
+    in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
+    given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
+    columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
+    row_tables = [_table_of(axis, body, columns_of) for axis in body.row_axes]
+    used_rows = {one.table for one in columns_of}
+    for axis in body.row_axes[1:]:
+        if axis.name not in used_rows:
+            of = next((each for each, value in body.items() if value is axis), axis.name)
+            said = f"what stands in their table says so, measured(..., of={of})"
+            raise SheetError(f"nothing is measured of the {axis.name}: {said}", of)
+    several = tuple(one for one in row_tables if one.name in used_rows)
+    if len(several) < 2:  # the only one needs no name
+        columns_of = tuple(replace(each, table="") for each in columns_of)
+    only = several[0] if several else row_tables[0]
+    return Workbook(
+        name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
+        title=title,
+        source=source,
+        ledger=lambda: replace(taken, entries=(*taken.entries, *entries)),
+        measured=columns_of,
+        parameters=given_to,
+        sheet=lambda names: body.optional.sheet(columns, names),
+        either=tuple(body.optional.either),
+        headline=tuple(headline) or tuple(last),
+        row=only.row,
+        least=only.least,
+        curves=tuple(body.curves),
+        means=tuple(_means(body, tuple(headline) or tuple(last))),
+        claims=tuple(body.claims),
+        constants=frozenset(body.constants),
+        margins=body.margins,
+        aside=frozenset(body.aside),
+        tables=(*body.tables, *(tables_of(sheet, in_tables) if body.tables and not prose else ())),
+        prose=prose or "generic",
+        figures=tuple(body.figures),
+        drawn=(lambda sheet: curves) if curves.columns else None,
+        groups=only.groups,
+        example=only.example if columns_of else (),
+        several=several if len(several) > 1 else (),
+        example_parameters={
+            one.name: body.examples[one.name] for one in given_to if one.name in body.examples
+        },
+    )
 
 
 class _Declaring(type):
