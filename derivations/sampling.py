@@ -29,6 +29,11 @@ _TRIES, _UNDEFINED = 60 * POINTS, 5 * POINTS
 """How many points are drawn, and after how many without a value none is looked for that refutes."""
 
 
+def exact(program: Tape) -> Any:
+    """The residual up to which sides may be equal, for all that is known at the point."""
+    return max(AGREES, 1000 * program.blur)
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What the numbers say of a claim: a counterexample, or how many points agree how well."""
@@ -109,13 +114,8 @@ class _Trial:
             if not abs(self.value(pivot)) > DETERMINES * self.size(pivot):
                 raise Refused("a premise does not determine what it is solved for")
         for label, (left, right) in zip(self.labels, self.premises, strict=True):
-            if any(not residual <= self.exact for _, _, residual in self.gap(left, right)):
+            if any(not residual <= exact(self.program) for _, _, residual in self.gap(left, right)):
                 raise Refused(f"what {label} was solved for does not satisfy it")
-
-    @property
-    def exact(self) -> Any:
-        """The residual up to which sides may be equal, for all that is known at the point."""
-        return max(AGREES, 1000 * self.program.blur)
 
     def residuals(self) -> Iterator[tuple[Any, Any, Any]]:
         """Neighbouring sides of the claim and their relative difference."""
@@ -212,7 +212,7 @@ def examine(system: System, seed: str) -> Outcome:
             except UNDEFINED:
                 found = [(mpmath.nan,) * 3]
             finite = all(mpmath.isfinite(side) for pair in found for side in pair[:2])
-            if not finite or any(AGREES < residual <= trial.exact for _, _, residual in found):
+            if not finite or any(AGREES < residual <= exact(trial.program) for _, _, residual in found):
                 undefined.append(trial.describe(point))
                 if len(undefined) > _UNDEFINED:
                     break

@@ -18,7 +18,7 @@ from .equation import Equation
 from .evaluation import UNDEFINED, Tape, is_real
 from .few_rows import Statement
 from .proved import DIGITS
-from .sampling import AGREES, magnitude
+from .sampling import exact, magnitude
 from .vocabulary import Vocabulary
 
 _NUDGE = mpmath.mpf(10) ** -20
@@ -196,12 +196,7 @@ class _Trial:
     def unequal(self) -> list[Sides]:
         """The equations that do not hold where it stands."""
         pairs = zip(self.equations, self.residuals(), strict=True)
-        return [equation for equation, residual in pairs if not abs(residual) <= self.exact]
-
-    @property
-    def exact(self) -> Any:
-        """The residual up to which sides are equal: integrals may be less certain than all else."""
-        return max(AGREES, 1000 * self.program.blur)
+        return [equation for equation, residual in pairs if not abs(residual) <= exact(self.program)]
 
     def describe(self, point: list[Any]) -> dict[str, str]:
         """Where a point lies."""

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, told
+from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, say, told
 
 if TYPE_CHECKING:
     from ..cells.values import Cell
@@ -64,7 +64,6 @@ def run(options: argparse.Namespace) -> int:
     """Build, and tell the result and what is not as expected."""
     from .. import build
     from ..inputs.folders import report_folder
-    from ..messages.diagnostics import visible
     from ..study import Study
 
     formats = None if options.to is None else build.parse_formats(options.to)
@@ -72,9 +71,6 @@ def run(options: argparse.Namespace) -> int:
     out = out_of(options, folder)
     if formats is None:
         formats = build.formats_again(out)
-
-    def say(sentence: str) -> None:
-        print(visible(sentence), flush=True)
 
     with Progress(sys.stderr) as progress:
         study = Study(folder, step=progress)

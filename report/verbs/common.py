@@ -91,6 +91,11 @@ def outcome(checks: Iterable[Check]) -> int:
     return OK if all(check.passed for check in checks) else FINDINGS
 
 
+def say(sentence: str) -> None:
+    """Print what may name files, at once."""
+    print(visible(sentence), flush=True)
+
+
 def answer(told: str, known: bool) -> int:
     """Print what is told of cells; the exit code: a cell that was asked for and has no value is a finding."""
     print(told)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from .common import OK, result_argument, source_argument
+from .common import OK, result_argument, say, source_argument
 
 HELP = "make an output folder an RO-Crate with its inputs, to be archived"
 
@@ -29,9 +29,8 @@ def run(options: argparse.Namespace) -> int:
     """Write ro-crate-metadata.json and name it."""
     from ..archive.crate import write
     from ..inputs.folders import report_folder, result
-    from ..messages.diagnostics import visible
 
     folder = report_folder(options.folder) if options.folder else None
     whose = options.author, options.organization
-    print(visible(str(write(result(options.out), options.date, options.license, *whose, folder))))
+    say(str(write(result(options.out), options.date, options.license, *whose, folder)))
     return OK

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .common import OK, named
+from .common import OK, named, say
 
 HELP = "make a folder to start a campaign from"
 METHODS = Path(__file__).resolve().parents[2] / "templates" / "methods"
@@ -26,7 +26,6 @@ def run(options: argparse.Namespace) -> int:
     """Write the folder and name its files."""
     from ..archive import scaffold
     from ..inputs.folders import written
-    from ..messages.diagnostics import visible
     from ..messages.errors import UnknownWorkbook, UsageError, diagnose, listing, unknown
     from ..which_workbook import find_workbook
     from ..workbooks import SHIPPED
@@ -49,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
         raise unknown("service", options.ci, scaffold.CI)
     folder = Path(options.folder)
     for path in scaffold.new(folder, workbook, options.ci, content):
-        print(visible(str(path)))
+        say(str(path))
     if options.ci and scaffold.repository(folder) is None:
         print(f"{options.ci} reads the last one once {folder} is the root of a repository")
     print(f"edit them, then: loopsheet build {written(folder)}")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .build import older, out_argument, out_of, summary
-from .common import OK, Progress, folder_argument, keeping_arguments
+from .common import OK, Progress, folder_argument, keeping_arguments, say
 
 if TYPE_CHECKING:
     from ..files.values import Result
@@ -41,7 +41,6 @@ def run(options: argparse.Namespace) -> int:
     from ..files.values import NAME
     from ..inputs.folders import report_folder, told, written
     from ..machine.local_server import Server
-    from ..messages.diagnostics import visible
 
     formats = parse_formats(options.to)
     folder = report_folder(options.folder)
@@ -49,8 +48,7 @@ def run(options: argparse.Namespace) -> int:
     issued = formats_there(out)
     try:
         with Server(out) as server:
-            said = f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)"
-            print(visible(said), flush=True)
+            say(f"watching {told(folder)}; its report is at {server.address} (Ctrl-C ends)")
             _watch(folder, out / NAME, lambda: _again(folder, out, formats, server.tell))
     except KeyboardInterrupt as stopped:
         if getattr(stopped, "number", signal.SIGINT) != signal.SIGINT:
@@ -59,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
         if gone := {*issued} - {*formats_there(out)}:
             there = f" --out {written(out)}" if options.out else ""
             command = f"loopsheet build {written(folder)} --to {','.join(issued)}{there}"
-            print(visible(f"'{command}' makes again what went: {', '.join(sorted(gone))}"))
+            say(f"'{command}' makes again what went: {', '.join(sorted(gone))}")
     return OK
 
 
@@ -101,13 +99,9 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
     """Build once more, and say what changed or what is wrong; the files that were read."""
     from ..archive.differences import compare
     from ..build import built
-    from ..messages.diagnostics import visible
     from ..messages.errors import LoopsheetError, render_all
     from ..study import Study
     from ..views.differences import as_text
-
-    def say(sentence: str) -> None:
-        print(visible(sentence), flush=True)
 
     before = _result(out)
     try:
@@ -121,7 +115,9 @@ def _again(folder: Path, out: Path, formats: tuple[str, ...], tell: Callable[...
     after = _result(out)
     changed = as_text(compare(before, after), MOST) if before and after else ""
     told = changed.splitlines() if changed else found.told["lines"]
-    print(*told, *older(study), visible(f"{len(found.files)} files in {out}"), sep="\n", flush=True)
+    for line in (*told, *older(study)):
+        print(line)
+    say(f"{len(found.files)} files in {out}")
     tell(changed=changed)
     return study.files
 
