@@ -15,8 +15,7 @@ from loopsheet.report.distribution import DIVISORS, Shape
 from loopsheet.report.laws import Exponential, Law, Samples, TruncatedNormal
 from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.uncertainty.conformity import beyond
-from loopsheet.report.uncertainty.convolution import LITTLE, Convolved, _Part, convolved
-from loopsheet.report.uncertainty.freedom import of_sum
+from loopsheet.report.uncertainty.coverage import LITTLE, Convolved, _Part, convolved, of_sum
 
 CLOSE = 2e-6
 """Bins are 1/2048 wide: their square, times what the densities below are and bend at most."""

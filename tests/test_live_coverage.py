@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from loopsheet.report.distribution import Shape
 from loopsheet.report.engines.javascript import RUNTIME
-from loopsheet.report.uncertainty.convolution import Convolved, _Part
+from loopsheet.report.uncertainty.coverage import Convolved, _Part
 from loopsheet.report.views.writer import TEMPLATES
 
 CLOSE = 1e-4

@@ -21,8 +21,7 @@ from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty import propagation, second_order
-from loopsheet.report.uncertainty.coverage import assigned, coverage
-from loopsheet.report.uncertainty.freedom import effective
+from loopsheet.report.uncertainty.coverage import assigned, coverage, effective
 from loopsheet.report.uncertainty.propagation import Spread
 
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"

@@ -37,8 +37,7 @@ from ..result.uncertain import (
 from ..sheet import Column, CountedAxis, Given, PairAxis, RepeatAxis
 from ..workbook import Curve, SquareSum, Workbook
 from .conformity import conformity
-from .coverage import assigned, coverage
-from .freedom import of_sum, with_correlated
+from .coverage import assigned, coverage, of_sum, with_correlated
 from .misfit import least_squares_of_errors
 from .monte_carlo import by_draws
 from .second_order import COUNTS, SecondOrder, root_of

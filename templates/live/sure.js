@@ -118,7 +118,7 @@ class Sure {
     return below > 1e-9 ? Math.max(1, Math.floor(Math.round(100 / below) / 100)) : Infinity;
   }
 
-  // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/convolution.py).
+  // From the sum of the errors, where they are not all normal or t; as a rebuild tells it (uncertainty/coverage.py).
   factor(parts, variances, freedom, u, more) {
     const { errors, pairs } = this;
     // With terms of second order they are no sum: the shape is that of an error that dominates all else, or normal.
