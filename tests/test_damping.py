@@ -31,10 +31,8 @@ from loopsheet.derivations.proof import check_step, prove
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report.cli import main
 from loopsheet.report.impacts.code import R
-from loopsheet.report.impacts.codes import CODES
-from loopsheet.report.impacts.codes.exudyn_damped import k as K_EXUDYN
-from loopsheet.report.impacts.codes.exudyn_damped import n as N_EXUDYN
-from loopsheet.report.impacts.codes.simbody import dissipation, stiffness
+from loopsheet.report.impacts.codes import CODES, stiffness
+from loopsheet.report.impacts.codes import k as K_EXUDYN
 from loopsheet.report.impacts.damping import _value, _zero, number_by, number_for, returned
 from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
@@ -147,7 +145,7 @@ COARSER = 5.003239017129689
 def test_what_exudyn_publishes_comes_out_to_its_time_step() -> None:
     """No rebound is farther off than the coarser step is from the finer one."""
     at_step = EXUDYN["carvalho_martins"][0.5]
-    law, typed = CODES["exudyn-damped"].law, {K_EXUDYN: 1e6, N_EXUDYN: 1.0}
+    law, typed = CODES["exudyn-damped"].law, {K_EXUDYN: 1e6, n: 1.0}
     for author, rebounds in EXUDYN.items():
         for restitution, speed in rebounds.items():
             found = [returned(number_by(author, restitution, 1.0))]
@@ -159,7 +157,7 @@ def test_what_exudyn_publishes_comes_out_to_its_time_step() -> None:
 
 def test_the_force_that_simbody_s_own_test_expects() -> None:
     """TestHuntCrossleyForce.cpp, commit 48fbaf3, for two surfaces alike."""
-    forces = CODES["simbody"].law.at(1.0, 1.0, {R: 0.8, stiffness: 2.0, dissipation: 0.5})
+    forces = CODES["simbody"].law.at(1.0, 1.0, {R: 0.8, stiffness: 2.0, c: 0.5})
     for depth in (0.1, 0.3, 0.7):
         for speed in (-1.0, -0.3, 0.0, 0.7):
             k = 2 ** (2 / 3) / 2
