@@ -485,25 +485,28 @@ def test_a_value_in_the_guard_band_is_not_printed_as_its_end(
     assert "no decision on x_p[1]: it lies in the guard band" in said
 
 
-LINE = """from loopsheet import Method, fit, measured, unknown
+SPRING = """from loopsheet import Method, fit, given, let, measured, unknown
 
-class Line(Method, headline="b"):
-    "A line."
-    x = measured("1", "abscissa")
-    y = measured("mm", "ordinate")
-    a, b = unknown("intercept", "mm"), unknown("slope", "mm")
-    line = fit(y, a + b * x)
+class Spring(Method, rows="loads", headline="give"):
+    "A spring."
+    m = measured("g", "mass", positive=True)
+    x = measured("mm", "position")
+    g = given("m/s^2", "free fall", positive=True)
+    F = let(m * g, "force", "N")
+    zero, give = unknown("position without a mass", "mm"), unknown("way by force", "mm/N")
+    line = fit(x, zero + give * F)
 """
 
 
 def test_a_limit_of_what_has_no_budget_in_the_workbook_is_told_there(tmp_path: Path) -> None:
     """Of the scatter of a fit only draws know how it is distributed: there are no formulas for it."""
-    (tmp_path / "workbook.py").write_text(LINE, encoding="utf-8")
-    rows = "".join(f"{n},{n}.0,{2 * n + (-1) ** n * 0.25}\n" for n in range(1, 7))
-    (tmp_path / "measurements.csv").write_text(f"test,x [1],y [mm]\n{rows}", encoding="utf-8")
+    (tmp_path / "workbook.py").write_text(SPRING, encoding="utf-8")
+    rows = "1,50.0,112.4\n2,100.0,132.1\n3,150.0,151.3\n4,200.0,171.4\n5,250.0,190.7\n"
+    (tmp_path / "measurements.csv").write_text(f"load,m [g],x [mm]\n{rows}", encoding="utf-8")
     toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    stated = '[uncertainty]\ny = "u = 0.2 mm"\n[limits]\nline_s = "<= 0.2 mm"\n'
-    (tmp_path / "report.toml").write_text(toml + stated, encoding="utf-8")
+    toml += '[parameters]\ng = "9.8123 m/s^2, u = 0.0002 m/s^2"\n'
+    toml += '[uncertainty]\nm = "+-0.1 g rect"\nx = "u = 0.3 mm"\n[limits]\nline_s = "<= 0.2 mm"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
     main(["build", str(tmp_path), "--to", "xlsx"])
     book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")["uncertainty"]
     told = [str(row[0].value) for row in book.iter_rows()]
