@@ -62,6 +62,13 @@ class Delivered:
     def program(self) -> engine.Program:
         return engine.Program.of(self.whole)
 
+    @cached_property
+    def every(self) -> dict[str, Column]:
+        """The columns that have cells, passes among them, each with the column that has its rule."""
+        found = {column.name: column for column in self.whole.columns}
+        passes = passes_of(self.report.sheet, self.grid.passes)
+        return found | {name: found[each.rule] for name, each in passes.items()}
+
     def edited(self, edits: Edits) -> bytes:
         """The delivered file after somebody typed into it, everything else as it was stored."""
         return typed(self.content, self.cells(edits))
@@ -257,12 +264,7 @@ def compare(
         own = delivered.whole.by_name.get(column.name.removeprefix("plotted_"), column)
         return {own.name, *(each.name for each in delivered.whole.ancestors(own))}
 
-    rules = {column.name: column for column in delivered.whole.columns}
-    rules |= {
-        name: rules[each.rule]
-        for name, each in passes_of(delivered.report.sheet, delivered.grid.passes).items()
-    }
-    for its, column in rules.items():
+    for its, column in delivered.every.items():
         given = isinstance(column.rule, Given)
         place = delivered.grid[checked(its) if given else its].place
         name, _, a_pass = its.removeprefix("plotted_").partition("_pass_")

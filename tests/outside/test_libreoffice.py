@@ -136,7 +136,7 @@ def test_recalculates_after_an_edit_as_numpy_does(office: Office, name: str) -> 
     values = delivered.values(office.edits[name])
     found = spreadsheets.compare(delivered, values, office.read[name])
     assert not found.wrong, (len(found.wrong), found.wrong[:5])
-    assert found.cells == sum(delivered.grid[c.name].place.rows for c in delivered.whole.columns)
+    assert found.cells == sum(delivered.grid[name].place.rows for name in delivered.every)
 
 
 @pytest.mark.parametrize("name", ["as issued", "e of test 3", "no root", "an empty input", "twelve tests"])
