@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -16,6 +17,8 @@ from ..cells.layout import evenly
 from ..cells.values import Status
 from ..charts import BARS, IN_A_ROW, INK, MOST_DOTS, MOST_GROUPS, MOST_PANELS, VERMILION, Chart, Series, shade
 from ..document.charted import PREFIXES, Letters, Words, thinned
+from ..quantity import behind
+from ..result.numbers import rounded
 from ..result.result import Report
 from ..sheet import GroupAxis
 from . import drawing
@@ -195,7 +198,7 @@ def draw(report: Report, chart: Chart) -> Figure:
                 f"{axis}scale": "log" if axis in chart.log else "linear",
             }
         )
-    _Picture(words, chart, units[1][1:], figure, axes, found).draw()
+    _Picture(words, chart, units[1], figure, axes, found).draw()
     return figure
 
 
@@ -272,7 +275,7 @@ class _Picture:
         self,
         words: Words,
         chart: Chart,
-        up: tuple[float, float],
+        up: tuple[str, float, float],
         figure: Figure,
         axes: Axes,
         found: list[list[Trace]],
@@ -304,7 +307,7 @@ class _Picture:
                 self.level(series)
             elif own:
                 (self.points if series.style == "points" else self.lines)(series, own)
-        if len(self.keys) > 1 or any(key.get_marker() == "^" for key in self.keys):
+        if len(self.keys) > 1 or any(key.get_marker() in ("^", "v") for key in self.keys):
             ncols = _in_columns([str(key.get_label()) for key in self.keys])
             self.figure.legend(
                 handles=self.keys, loc="outside upper left", ncols=ncols, handlelength=1.5, columnspacing=1
@@ -370,15 +373,19 @@ class _Picture:
 
     def edge(self, at: Array, beyond: NDArray[np.intp], told: str) -> None:
         """Triangles at the edges towards points that are outside."""
-        from matplotlib.lines import Line2D
-
         (left, right), (bottom, top) = self.frame.ends
         for x, y in at[:, beyond].T:
             marker = "^" if y > top else "v" if y < bottom else ">" if x > right else "<"
             place = np.clip(x, left, right), np.clip(y, bottom, top)
             self.axes.plot(*place, marker, ms=5, color=VERMILION, clip_on=False, zorder=3)
         if len(beyond):
-            self.keys.append(Line2D([], [], ls="", marker="^", ms=5, color=VERMILION, label=told))
+            self.outside(told, "^")
+
+    def outside(self, told: str, marker: str) -> None:
+        """Say above the picture what lies outside of it."""
+        from matplotlib.lines import Line2D
+
+        self.keys.append(Line2D([], [], ls="", marker=marker, ms=5, color=VERMILION, label=told))
 
     def name(
         self, series: Series, own: list[Trace], at: Array, named: NDArray[np.intp], beyond: NDArray[np.intp]
@@ -391,7 +398,8 @@ class _Picture:
             far, text = n in beyond, mathtext((("", names[n]),))
             if far:
                 cell = report.values.cell(series.y, labels[n]) if series.y in report.sheet else None
-                text += f": {report.text(cell) if cell else format(at[1, n], '.6g')}"
+                plain = rounded(float(at[1, n]), 2).text + behind(self.up[0])
+                text += f": {report.text(cell) if cell else plain}"
             self.names.append((text, [(held[n], AROUND[:2] if far else AROUND)], {"fontsize": 8.5}))
 
     def lines(self, series: Series, own: list[Trace]) -> None:
@@ -424,14 +432,16 @@ class _Picture:
 
     def level(self, series: Series) -> None:
         """A single number as a line over the whole width, named at an end that is free."""
-        size, zero = self.up
+        _, size, zero = self.up
         value = (self.words.plotted.values.scalar(series.y) - zero) / size
         (left, right), (bottom, top) = self.frame.ends
+        text = mathtext((*self.words.label(series), ("", self.words.value(series.y))))
         if not bottom <= value <= top:
+            if math.isfinite(value):
+                self.outside(f"{text}, outside the frame", "^" if value > top else "v")
             return
         self.axes.axhline(value, color=series.colour, lw=1.0, ls=(0, (5, 3)), zorder=1.5)
         self.taken.append((np.linspace([left, value], [right, value], 200).T, 1.0))
-        text = mathtext((*self.words.label(series), ("", self.words.value(series.y))))
         ends: list[tuple[Array, Sequence[Place]]] = [
             (np.array([x, value]), ((dx, 3, side, "bottom"), (dx, -3, side, "top")))
             for x, dx, side in ((left, 4, "left"), (right, -4, "right"))

@@ -15,6 +15,7 @@ from ..charts import BLUE as UNLOADING
 from ..charts import INK
 from ..charts import VERMILION as LOADING
 from ..document.names import latex_names, name_latex
+from ..result.numbers import rounded
 from ..result.result import Comparison, Report
 from ..result.verdict import EXACT, REACHABLE, UNREACHABLE
 from ..result.verdict_words import CALLED
@@ -33,6 +34,8 @@ FURTHEST = 1000.0
 """Units of the last digit up to which a bar is drawn; what goes on beyond ends in an arrowhead."""
 
 TICKS = (1, 3, 10, 30, 100, 300, 1000)
+WIDE = 10.0
+"""How wide a scale is on which only whole powers of ten have room."""
 LONGEST = 46
 """Characters of a source's name; the tables have it in full."""
 HALF = 0.26
@@ -175,7 +178,10 @@ def draw(report: Report) -> Figure:
     _marks(axes, places)
     for place, row in places:
         if not row.solid:  # said in words too
-            _beside(axes, CALLED[row.verdict], (right, place), -2)
+            here = row.here or 0.0
+            sign = "+" if here > 0 else ""
+            far = f", off by {sign}{rounded(here, 3).text}" if abs(here) > FURTHEST else ""
+            _beside(axes, CALLED[row.verdict] + far, (right, place), -2)
     _key(figure, places)
     return figure
 
@@ -192,13 +198,16 @@ def _beside(axes: Axes, text: str, at: tuple[float, float], points: float) -> No
 def _limits(found: Iterable[ReachRow]) -> tuple[float, float]:
     ends = [end for row in found for end in (row.low, row.high, row.here or 0.0, *row.band)]
     low, high = _scaled(ends).min(), _scaled(ends).max()
-    room = 0.06 * (high - low)
-    return float(low - room), float(high + room)
+    wide = high - low
+    # Words stand to the right of all marks, and further numbers behind them.
+    words = 0.0 if all(row.solid for row in found) else 0.2 if max(map(abs, ends)) <= FURTHEST else 0.55
+    return float(low - 0.06 * wide), float(high + (0.06 + words) * wide)
 
 
 def _abscissa(axes: Axes, lines: int) -> None:
     left, right = axes.get_xlim()
-    units = [sign * tick for tick in TICKS for sign in (-1, 1)]
+    ticks = TICKS if right - left < WIDE else TICKS[::2]
+    units = [sign * tick for tick in ticks for sign in (-1, 1)]
     inside = sorted([0, *(unit for unit in units if left < _scaled(unit) < right)])
     at = _scaled(inside)
     axes.set_xticks(at, [f"{unit:+d}".replace("-", "−") if unit else "0" for unit in inside])
@@ -244,7 +253,12 @@ def _bars(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
 
 def _marks(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
     """A ring for the recomputed value; a cross on what is out of reach."""
-    here = [(float(_scaled(row.here)), place) for place, row in places if row.here is not None]
+    known = [(row.here, place) for place, row in places if row.here is not None]
+    for units, place in known:
+        if abs(units) > FURTHEST:
+            marker = ">" if units > 0 else "<"
+            axes.plot(_scaled([units]), [place], marker, ms=6, color=INK, clip_on=False, zorder=5)
+    here = [(float(_scaled(units)), place) for units, place in known if abs(units) <= FURTHEST]
     if here:
         x, y = np.array(here).T
         drawing.dots(axes, x, y, 5.4, INK)
