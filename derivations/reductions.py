@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from sympy import Expr, Function, Mul, Sum
+from sympy import Add, Expr, Function, Mul, Pow, Sum
 from sympy.concrete.expr_with_limits import ExprWithLimits
 
 
@@ -79,18 +79,28 @@ class Member(Function):  # type: ignore[misc] # sympy has no types
 
 
 def never_negative(expr: Expr) -> bool:
-    """Whether an expression is surely 0 or more: as sympy knows, or as a range of one and the same terms is.
+    """Whether an expression is surely 0 or more where it has a value.
 
-    >>> from sympy import IndexedBase, Symbol
+    As sympy knows, or as a range of one and the same terms is, as an even root of anything, and as sums and
+    other reductions of such terms are.
+
+    >>> from sympy import IndexedBase, Rational, Symbol
     >>> k, n, t = Symbol("k", integer=True), Symbol("n", integer=True), IndexedBase(Symbol("t", real=True))
     >>> high, low = (taken(t[k], (k, 1, n)) for taken in (Greatest, Least))
     >>> [never_negative(each) for each in ((high - low) / 2, (high - low) ** 2, high + low, high, low - high)]
     [True, True, False, False, False]
+    >>> root = ((high - low) / (n - 1)) ** Rational(1, 2)
+    >>> never_negative(root), never_negative(Sum((t[k] - 1) ** 2, (k, 1, n)))
+    (True, True)
     """
-    if expr.is_nonnegative:
+    if expr.is_nonnegative or (isinstance(expr, Pow) and expr.exp.is_Rational and expr.exp.q % 2 == 0):
         return True
     if isinstance(expr, Mul):
         return all(map(never_negative, expr.args))
+    if isinstance(expr, REDUCTIONS):
+        return never_negative(taken_of(expr))
+    if isinstance(expr, Add) and all(map(never_negative, expr.args)):
+        return True
     terms = expr.as_coefficients_dict()
     greatest = [each for each in terms if isinstance(each, Greatest)]
     ranges = {each: terms[each] for each in greatest} | {Least(*each.args): -terms[each] for each in greatest}
