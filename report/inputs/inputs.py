@@ -385,7 +385,13 @@ class _Reader:
             return {}, frozenset()
         declared = {parameter.name: parameter for parameter in self.workbook.parameters}
         before = len(self.findings.found)
-        written = self.tables.keys(("parameters",), declared)
+        columns = {column.name for column in self.workbook.measured}
+
+        def measured(name: str) -> str:
+            moved = "its numbers stand in the table of the measurements; take this line out"
+            return f"{name} is a measured column of the workbook: {moved}" if name in columns else ""
+
+        written = self.tables.keys(("parameters",), declared, why_not=measured)
         printed = read_parameters(self.toml, written, self.workbook.parameters, self.findings, self.said)
         given = frozenset(written)
         # A misspelt name would also be missing from its combination: that is one problem, not two.
