@@ -42,7 +42,7 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("report.toml", "", '[uncertainty]\nz = "scatter"\n', "7:1", 'together: paired = ["x", "y"]'),
         ("report.toml", "", '[uncertainty]\nm = "u = 1 N"\n', "7:1", "from what is stated of x, y and K"),
         ("report.toml", TOML, TOML_STATED, "7:1", "what stands beside the numbers (report.toml:3:5)"),
-        ("report.toml", "[measurements]", 'x = "1 mm"\n[measurements]', "4:1", "x is a measured column of the"),
+        ("report.toml", "[measurements]", 'x = "1 mm"\n[measurements]', "4:1", "x is a measured column"),
         ("report.toml", "2.00", "2.00(3)e-1", "3:6", "stands before its uncertainty: 2.00e-1(3)"),
         ("report.toml", "N/mm", "N per mm", "3:13", "write / for per"),
         ("report.toml", "N/mm", "N/mm exact", "3:11", "a comma stands before what is stated: ', exact'"),
