@@ -71,6 +71,37 @@ def said(folder: Path, f: str, b: str, published: str, more: str = "") -> list[s
     return [first for first, *_ in judged(folder, DENSITY, published, more + given)]
 
 
+CORRECTED = '''\
+from sympy import pi, sin
+from loopsheet import Method, given, let, mean, measured
+
+
+class Pendulum(Method, source="own", rows="swings"):
+    """Free fall, with a correction for the amplitude."""
+
+    T = measured("s", "period", positive=True)
+    theta = measured("deg", "amplitude")
+    L = given("mm", "length", positive=True)
+    g_k = let(4 * pi**2 * L * (1 + sin(theta / 2) ** 2 / 4) ** 2 / T**2, "free fall by one", "m/s^2")
+    g = let(mean(g_k), "free fall", "m/s^2")
+'''
+
+
+def test_a_column_of_corrections_that_was_left_out(tmp_path: Path) -> None:
+    """It was 0; nearly nothing by a power of ten says the same, and is not said besides."""
+    periods, amplitudes = (2.0105, 2.0127, 2.0152), (4.0, 7.0, 9.0)
+    runs = "".join(
+        f"{n},{T},{angle}\n" for n, (T, angle) in enumerate(zip(periods, amplitudes, strict=True), 1)
+    )
+    without = [4 * np.pi**2 * 1.0 / T**2 for T in periods]
+    published = "".join(f"Table,g_k,{n},{value:.3f},m/s^2\n" for n, value in enumerate(without, 1))
+    published += f"Table,g,,{np.mean(without):.3f},m/s^2\n"
+    table = f"swing,T [s],theta [deg]\n{runs}"
+    found = judged(tmp_path, CORRECTED, published, '[parameters]\nL = "1000.0 mm"\n', table)
+    assert found[0] == ["theta was taken as 0"]
+    assert not any("theta are to be multiplied" in each for each, *_ in found)
+
+
 @pytest.mark.parametrize("more", ["", STATED])
 def test_what_was_computed_from_rounded_numbers(more: str, tmp_path: Path) -> None:
     density = "T1,rho,1,0.409,g/mL\nT1,rho,2,0.412,g/mL\nT1,rho,3,0.409,g/mL\n"

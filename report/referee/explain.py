@@ -6,7 +6,7 @@ conflicts among the published values (:mod:`.search`); one is dropped only with 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
@@ -64,6 +64,7 @@ def explanations(
         least = min((each.explanation.count for each in found), default=None)
         if least == 0 or (least is not None and kinds is not KINDS[0]):
             break
+    found = _without_near_nothing(found)
     doubts = Doubts.of(search)
     if doubts.alone is not None and least == 0:  # no misprints were looked for
         found += filter(doubts.is_slip_of_it, misprint(search, doubts.alone))
@@ -85,6 +86,17 @@ def possibilities(problem: Problem) -> tuple[Explained, ...]:
         exchanged_rows,
     )
     return tuple(chain.from_iterable(kind(search) for kind in kinds))
+
+
+def _without_near_nothing(found: Sequence[Explained]) -> list[Explained]:
+    """Explanations without those that make nearly nothing of what was taken as nothing: by a power of ten."""
+    firsts = [each.explanation.first for each in found]
+    nothing = {change.cell for change in firsts if _is_neglect(change) and change.would_print != "1"}
+
+    def is_near(change: Change) -> bool:
+        return change.kind in ("unit", "factor") and not change.index and change.cell in nothing
+
+    return [each for each in found if not is_near(each.explanation.first)]
 
 
 @dataclass(frozen=True)
@@ -145,8 +157,9 @@ class Doubts:
 
 
 def _is_neglect(change: Change) -> bool:
-    """Whether a parameter was taken as if there were none of it."""
-    return change.kind == "parameter" and change.would_print in habits.NEUTRAL
+    """Whether a parameter, or a column, was taken as if there were none of it."""
+    taken = change.kind, change.would_print
+    return taken in (("parameter", "0"), ("parameter", "1"), ("rows", habits.AS_NOTHING))
 
 
 def _is_rounding(change: Change) -> bool:

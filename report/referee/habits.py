@@ -22,8 +22,8 @@ from .problem import Box, Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-NEUTRAL = ("0", "1")
-"""What a correction is that is not made, and a factor."""
+NEUTRAL, AS_NOTHING = ("0", "1"), "as 0"
+"""What a correction is that is not made, and a factor; how a column is taken that was left out."""
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
 CHOSEN_FOR_ONE = 2
@@ -318,7 +318,7 @@ def _taken_as(problem: Problem, n: int, text: str, start: Array) -> tuple[Best, 
 
 
 def neglected(search: Search) -> Iterator[Explained]:
-    """A parameter that was taken as if there were none of it: a correction of 0, or a factor of 1."""
+    """What was taken as if there were none of it: as 0, also a measured column, or a factor as 1."""
     own = search.problem
     for name, printed in own.campaign.inputs.parameters.items():
         if name not in own.campaign.sheet or not own.campaign.suspects(name):
@@ -337,6 +337,15 @@ def neglected(search: Search) -> Iterator[Explained]:
                     yield search.explained([replace(_change(own, column, text), count=1)], problem, box, now)
                 else:
                     search.drop(certain=False)
+    for name, members in own.rows.items():
+        nothing, first = [0.0] * len(members), own.unknowns[members[0]].printed
+        if name not in own.campaign.inputs.measured or first is None or first.zero:
+            continue
+        allowed = all(own.unknowns[n].allowed.allow(Fraction(0)) for n in members)
+        is_there = own.campaign.suspects(name) and own.box.start[members].any()
+        if allowed and is_there and search.worth(search.resting_on(members)):
+            change = Change("rows", name, (), INPUT, "", AS_NOTHING)
+            yield from search.if_met([change], own, own.box.moved(members, nothing, nothing, nothing))
 
 
 def rounded_constants(search: Search) -> Iterator[Explained]:

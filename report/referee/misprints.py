@@ -64,6 +64,11 @@ class _Cell:
         value = point[self.n] if self.given else problem.guessing.evaluate(point[None])[0, self.n]
         return moved(self.printed, Fraction(float(value))) if np.isfinite(value) else None
 
+    def recomputed(self, problem: Problem) -> int | None:
+        """How many units further it prints as recomputed from what is printed, if it is published."""
+        value = float("nan") if self.given else problem.at(problem.box.start).cells[self.n]
+        return moved(self.printed, Fraction(float(value))) if np.isfinite(value) else None
+
     def change(self, problem: Problem, would: str, also: Sequence[str], span: tuple[str, ...]) -> Change:
         """What is claimed."""
         if self.given:
@@ -121,7 +126,7 @@ def _told(
     if start is None:
         return None
     low, high = (_last(start, way, possible) for way in (-1, 1))
-    ways = _in_order(cell.printed, low, high)
+    ways = _in_order(cell.printed, low, high, cell.recomputed(problem))
     would = next((units for units in ways[:LISTED] if possible(units) is not None), start)
     would = would if known_way is None else start
     others = [respelt(cell.printed, units).text for units in ways if units != would]
@@ -146,13 +151,21 @@ def _last(start: int, way: int, possible: Callable[[int], Best | None]) -> int:
     return last
 
 
-def _in_order(printed: Printed, low: int, high: int) -> list[int]:
-    """The ways to print a cell: those that one slip of the hand makes, then the others, middle ones first."""
+def _in_order(printed: Printed, low: int, high: int, again: int | None) -> list[int]:
+    """The ways to print a cell: those that one slip of the hand makes, then the others, middle ones first.
+
+    After these slips stands the one that is recomputed: `again`, if there is one.
+    """
     texts = dict.fromkeys(slips(printed.text))
     slipped = {moved(printed, Fraction(text) * printed.scale + printed.zero) for text in texts}
     middle = (low + high) // 2
     every = range(max(low, middle - LISTED), min(high, middle + LISTED) + 1)
-    near = sorted({*every, *slipped}, key=lambda units: (units not in slipped, abs(units - middle), units))
+    known = slipped if again is None else {*slipped, again}
+
+    def order(units: int) -> tuple[bool, bool, int, int]:
+        return units not in slipped, units != again, abs(units - middle), units
+
+    near = sorted({*every, *known}, key=order)
     return [units for units in near if low <= units <= high and units]
 
 
