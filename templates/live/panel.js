@@ -60,7 +60,8 @@ function lost({ trace }) {
   });
   const what = gone.length ? gone : begun.map(({ name, row }) => trace.address(name, row)), more = what.length - MOST_DRAWN;
   if (!what.length) return "";
-  return ` Without a value now: ${what.slice(0, MOST_DRAWN).join(", ")}${more > 0 ? ` and ${more} more` : ""}${gone.length ? "" : ", and what needs it"}.`;
+  const alone = begun.some(({ name }) => LIVE.paired?.includes(name)) ? " Of paired readings a build takes none alone: leave the row out." : "";
+  return ` Without a value now: ${what.slice(0, MOST_DRAWN).join(", ")}${more > 0 ? ` and ${more} more` : ""}${gone.length ? "" : ", and what needs it"}.${alone}`;
 }
 
 function placePanel() {

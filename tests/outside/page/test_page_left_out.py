@@ -168,3 +168,14 @@ def test_what_is_said_around_it_is_so(open_table: Callable[..., Live]) -> None:
     assert "nearest to all 4 tests" in counted.inner_text()
     live.type("e", 1, "abc")
     assert "nearest to all 3 tests" in counted.inner_text()
+
+
+def test_one_of_paired_readings_alone_is_told_to_be_none(open_page: Open, tmp_path: Path) -> None:
+    """No build takes a row in which one of them is missing: the page says what to do."""
+    build.build(Study(PAPER.parent / "gum_h2"), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    live.input("V", 2).click()
+    live.press("Delete")
+    assert "a build takes none alone: leave the row out" in live.text("live-banner")
+    live.press("Control+z")
+    assert live.text("live-banner") == ""
