@@ -153,6 +153,13 @@ def test_panes_are_frozen_and_steps_are_an_outline(grid: Grid, book: Any) -> Non
     assert (level.outlineLevel, level.hidden) == (1, False)
 
 
+@pytest.mark.parametrize("name", ["loops", "bands"])
+def test_points_that_are_only_drawn_are_printed_whole(book: Any, name: str) -> None:
+    """How many there are is given above them, in the first columns."""
+    last = get_column_letter(book[name].max_column)
+    assert re.search(r":\$([A-Z]+)\$", book[name].print_area)[1] == last  # type: ignore[index]
+
+
 def test_the_shares_of_a_variance_are_bars_of_a_whole(book: Any) -> None:
     sheet = book["uncertainty"]
     shares = {cell.coordinate for cell in sheet["I"] if str(cell.value).startswith("=")}

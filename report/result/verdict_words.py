@@ -56,12 +56,19 @@ _MOST_PLACES = 16
 # --- numbers ---------------------------------------------------------------------------------------------
 
 
+_NO_LESS = 1e-6
+"""By so little less than 1 a mismatch is 1."""
+
+
 def mismatch(value: float) -> str:
     """A mismatch with one decimal, or with as many as tell on which side of one it is.
 
-    >>> mismatch(8.4107), mismatch(1.02), mismatch(0.9996), mismatch(1.0)
-    ('8.4', '1.02', '0.9996', '1.0')
+    What is met up to rounding is 1.0, which is met.
+
+    >>> mismatch(8.4107), mismatch(1.02), mismatch(0.9996), mismatch(1.0), mismatch(0.9999999999)
+    ('8.4', '1.02', '0.9996', '1.0', '1.0')
     """
+    value = 1.0 if 1 - _NO_LESS < value < 1 else value
     for places in range(1, _MOST_PLACES):
         shown = _quantized(value, places, ROUND_HALF_EVEN)
         if (shown > 1, shown < 1) == (value > 1, value < 1):

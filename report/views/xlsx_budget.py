@@ -73,7 +73,7 @@ def told_budgets(report: Report) -> list[Budget]:
 
 def write_budgets(sheet: Any, style: Style, report: Report, grid: Grid) -> dict[str, tuple[str, str]]:
     """Write them, one below the other; return the formula and the text of each cell's statement."""
-    said = "Estimates follow the sheet; yellow cells may be changed."
+    said = "Estimates follow the sheet; yellow cells may be changed, in each budget for itself."
     budgets = told_budgets(report)
     fixed = any(_Written(sheet, style, report, grid, each, 0, "").is_fixed for each in budgets)
     if fixed:

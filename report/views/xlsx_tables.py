@@ -71,7 +71,8 @@ def _number_formats(report: Report, block: CellBlock) -> Sequence[str]:
 def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, inputs: GivenCells) -> None:
     """Write the worksheet that holds the rows of an axis."""
     axis, blocks, below = grid.axes[name], grid.on(name), 0
-    main = [b for b in blocks if b.kind in ("given", "computed")] or list(blocks)
+    # Of points that are only drawn, how many there are stands above them.
+    main = [b for b in blocks if b.kind in ("given", "computed") and b.place.row == FIRST_ROW] or list(blocks)
     style.page(sheet, f"{name}: {axis.described}")
     if name in grid.notes:
         weighed = any(block.name in report.sheet.weighed for block in blocks)
