@@ -126,6 +126,28 @@ def test_a_group_without_readings_has_no_value(tmp_path: Path, capsys: pytest.Ca
     assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
 
 
+FAR_FROM_A_MEAN = """\
+from sympy import sqrt
+from loopsheet import Method, count, groups, let, mean, measured
+
+class Far(Method, rows="readings", headline="over over_g"):
+    "What has a value only above the mean."
+    y = measured("1", "reading")
+    std = groups("std")
+    t = let(mean(y, of=std), "mean of a standard")
+    m, m_g = let(mean(y), "mean"), let(mean(t), "mean of the standards")
+    z = let(sqrt(y - m), "above the mean")
+    z_g = let(sqrt(t - m_g), "standards above their mean")
+    over, over_g = let(count(z), "how many are"), let(count(z_g), "how many standards are")
+"""
+
+
+def test_what_rests_on_a_mean_is_counted_where_it_has_a_value(tmp_path: Path) -> None:
+    rows = (("A", "1.0"), ("A", "2.0"), ("B", "4.0"), ("B", "5.0"), ("C", "1.5"))
+    values = Study(grouped.write(tmp_path, rows, "std,y [1]", FAR_FROM_A_MEAN)).computed.values
+    assert (values.scalar("over"), values.scalar("over_g")) == (2, 1)
+
+
 OVER_GROUPS = """\
 from sympy import sqrt
 from loopsheet import Method, count, fit, groups, let, mean, measured, median, total, unknown

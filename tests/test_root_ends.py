@@ -6,6 +6,7 @@ import mpmath
 import pytest
 
 import loopsheet
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
 
 
@@ -73,3 +74,17 @@ def test_the_ends_of_a_root_have_its_unit(tmp_path: Path) -> None:
     found = loopsheet.load(tmp_path)["q"]
     assert found.unit == "cm^-1"
     assert float(found.value) == pytest.approx(float(wanted) / 100, rel=1e-14)
+
+
+def test_a_number_that_would_take_the_name_of_something_else_is_told(tmp_path: Path) -> None:
+    (tmp_path / "workbook.py").write_text(
+        "from loopsheet import Method, given, let, root, unknown\nclass R(Method):\n    'A root.'\n"
+        '    a = given("s", "scale", default="2 s")\n'
+        '    x_low = let(a / 2, "half of it", "s")\n'
+        '    x = unknown()\n    x = root(x**2, a**2, "x", "s", low=1, high=5 * a)\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n', encoding="utf-8")
+    with pytest.raises(InputError) as told:
+        assert Study(tmp_path).computed
+    assert "x_low is declared twice: of the ends, the number 1 is a parameter of that name" in str(told.value)

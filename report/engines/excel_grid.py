@@ -16,7 +16,15 @@ from ..charts import Drawn
 from ..plan.kept import of_data, of_sheet
 from ..sheet import Axis, MemberAxis, Sheet
 from .excel_loops import PASSES, pass_columns, passes_of
-from .excel_values import auxiliary_values, filled, loops_settle, settles, slope_values, with_passes
+from .excel_values import (
+    NotPrintable,
+    auxiliary_values,
+    filled,
+    loops_settle,
+    settles,
+    slope_values,
+    with_passes,
+)
 from .numpy import extend
 
 MOST_ROWS = 40_000
@@ -70,6 +78,10 @@ def grid(
         A formula has no spreadsheet formula.
     """
     check_rows(values.layouts)
+    if taken := passes_of(sheet, _PASSES[-1]).keys() & values.sheet.by_name.keys():
+        raise NotPrintable(
+            f"{min(taken)} is what a worksheet calls a step of a fit: call the column otherwise"
+        )
     drawn = with_first_pass(drawn, sheet)
     thinned = drawn.thinned if drawn else ()
     every = values if drawn is None else extend(values, drawn.columns, drawn.given)
@@ -102,10 +114,9 @@ def grid(
         thinned,
     )
     hangs_on = repr((names, own, words, sizes))
-    for last in (*_PASSES, PASSES):  # where none is enough, they are not laid out for nothing
-        shown = with_passes(every, sheet, last)
-        if loops_settle(shown, sheet, last):
-            break
+    shown = with_passes(every, sheet, _PASSES[-1])
+    # Where none is enough, they are not laid out for nothing.
+    last = next((last for last in _PASSES if loops_settle(shown, sheet, last)), PASSES)
     for times in _TIMES:
         parts = [hangs_on, str(times), str(last)]
         told = of_sheet(whole, "formulas of the workbook", parts, partial(make, times))

@@ -429,6 +429,9 @@ class MethodBody(dict[str, Any]):
             return exact(self._of_one_row(end))
         if not end and not size_of(name, said.unit).zero:
             return end
+        if name in self.columns:
+            said_so = f"the number {float(end):.15g} is a parameter of that name: call the other otherwise"
+            raise SheetError(f"{name} is declared twice: of the ends, {said_so}", name)
         which = name.rpartition("_")[2]
         line = InputLine(
             f"{said.meaning}, {which}",
@@ -594,7 +597,7 @@ class MethodBody(dict[str, Any]):
         size, told = size_of(name, said.unit), said.ends or {}
         low, high, start = told["low"], told["high"], told["start"]
         if (low.is_number and high.is_number) or not size.dimension:
-            low, high = in_si(low, size), in_si(high, size)
+            low, high = (in_si(exact(self._of_one_row(end)), size) for end in (low, high))
         else:
             low, high = self._end(f"{name}_low", said, low), self._end(f"{name}_high", said, high)
         ends = {"low": low, "high": high, "start": (low + high) / 2 if start is None else in_si(start, size)}

@@ -52,7 +52,8 @@ class SameRows:
         named = set[str]().union(*(self.below[name] for name in lines))
         for column in self.sheet.columns:
             own = replace(column, spare=False) if column.spare and column.name in named else column
-            yield replace(own, alongside=tuple(self._alongside(column))) if column.name in self.sums else own
+            looks_at = dict.fromkeys((*column.alongside, *self._alongside(column)))
+            yield replace(own, alongside=tuple(looks_at)) if column.name in self.sums else own
 
     def _alongside(self, total: Column) -> Iterator[Column]:
         """What a column that sums over rows asks whether a row has a value."""

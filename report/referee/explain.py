@@ -94,7 +94,7 @@ def _without_near_nothing(found: Sequence[Explained]) -> list[Explained]:
     nothing = {change.cell for change in firsts if _is_neglect(change) and change.would_print != "1"}
 
     def is_near(change: Change) -> bool:
-        return change.kind in ("unit", "factor") and not change.index and change.cell in nothing
+        return change.kind == "unit" and change.power < 0 and not change.index and change.cell in nothing
 
     return [each for each in found if not is_near(each.explanation.first)]
 
@@ -158,8 +158,8 @@ class Doubts:
 
 def _is_neglect(change: Change) -> bool:
     """Whether a parameter, or a column, was taken as if there were none of it."""
-    taken = change.kind, change.would_print
-    return taken in (("parameter", "0"), ("parameter", "1"), ("rows", habits.AS_NOTHING))
+    parameter = change.kind == "parameter" and change.would_print in habits.NEUTRAL
+    return parameter or change.kind == "neglect"
 
 
 def _is_rounding(change: Change) -> bool:

@@ -22,8 +22,8 @@ from .problem import Box, Problem
 from .search import Explained, Search
 from .ways import Way, from_printed, over_rows
 
-NEUTRAL, AS_NOTHING = ("0", "1"), "as 0"
-"""What a correction is that is not made, and a factor; how a column is taken that was left out."""
+NEUTRAL = ("0", "1")
+"""What a correction is that is not made, and a factor."""
 CHOSEN, MOST_DIGITS = 3, 6
 """Significant digits of a convention that somebody may have chosen, and of one that is looked for."""
 CHOSEN_FOR_ONE = 2
@@ -344,7 +344,7 @@ def neglected(search: Search) -> Iterator[Explained]:
         allowed = all(own.unknowns[n].allowed.allow(Fraction(0)) for n in members)
         is_there = own.campaign.suspects(name) and own.box.start[members].any()
         if allowed and is_there and search.worth(search.resting_on(members)):
-            change = Change("rows", name, (), INPUT, "", AS_NOTHING)
+            change = Change("neglect", name, (), INPUT, "", NEUTRAL[0])
             yield from search.if_met([change], own, own.box.moved(members, nothing, nothing, nothing))
 
 

@@ -34,6 +34,7 @@ POSSIBLE = {
     "unit": "possible unit",
     "factor": "possible factor",
     "rows": "possible rows",
+    "neglect": "possible neglect",
     "parameter": "possible convention",
     "printed": "possible rounding",
 }
@@ -324,6 +325,8 @@ def claimed(change: verdict.Change) -> str:
             return f"the numbers of {cell}{of} are to be multiplied by {would or f'1e{change.power}'}"
         case "rows":
             return f"{cell}{of} was taken {would}{_or(change)}"
+        case "neglect":
+            return f"{cell} was taken as {would}"
         case "order":
             return f"{cell}{of} stands in another order, {would}"
         case "label" if not change.cell:
@@ -361,6 +364,8 @@ def _suggested(change: verdict.Change) -> str:
             return f"may have to be multiplied by {would or f'1e{change.power}'}"
         case "rows":
             return f"may have been taken {would}"
+        case "neglect":
+            return f"may have been taken as {would}"
         case "order":
             return f"may belong in the order {would}"
         case "label" if not change.cell:
@@ -415,7 +420,7 @@ def lines(found: verdict.Referee, meaning: Callable[[str], str]) -> Iterator[str
         yield f"referee    {said}"
     for said in why(found):
         yield f"  {said}"
-    if every := (*(found.explanations if found.asked_why else ()), *found.slips):
+    if every := (*(found.explanations if found.asked_why else ()), *found.slips, *found.pinned):
         yield f"  names    {names(every)}"
     for label in found.labels:
         yield f"  label    {relabelled(label)}"

@@ -271,7 +271,7 @@ def compare(
         drawn = not given and not a_pass and its not in sheet
         allowed = largest * (lost if name in MISFITS else 1)
         if a_pass:  # while a loop looks for its place, a pass may double what rounding made of the last one
-            allowed *= 2 ** int(a_pass)
+            allowed *= 2 ** min(int(a_pass), 20)
         known, codes = values.value[its], values.status[its]
         if not known.size:
             # A count that is refused leaves no rows; those of the workbook say so.
