@@ -76,10 +76,11 @@ def test_they_are_followed_only_so_far() -> None:
 
 def test_slips_come_first_then_the_middle_and_never_what_is_printed() -> None:
     # From 1.75 to 1.79 each is a slip, from 1.98 to 2.02 none.
-    assert misprints._in_order(pure("1.77"), -2, 2) == [-1, 1, -2, 2]
-    assert misprints._in_order(pure("1.77"), 21, 25) == [23, 22, 24, 21, 25]
-    assert misprints._in_order(pure("1.77"), 20, 24)[0] == 20, "1.97"
-    assert len(misprints._in_order(pure("1.77"), 1000, 2000)) == 2 * misprints.LISTED + 1
+    assert misprints._in_order(pure("1.77"), -2, 2, None) == [-1, 1, -2, 2]
+    assert misprints._in_order(pure("1.77"), 21, 25, None) == [23, 22, 24, 21, 25]
+    assert misprints._in_order(pure("1.77"), 20, 24, None)[0] == 20, "1.97"
+    assert misprints._in_order(pure("1.77"), 21, 25, 25) == [25, 23, 22, 24, 21], "what is recomputed"
+    assert len(misprints._in_order(pure("1.77"), 1000, 2000, None)) == 2 * misprints.LISTED + 1
 
 
 def test_a_misprint_is_looked_for_up_to_ten_times_what_is_printed() -> None:

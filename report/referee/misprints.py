@@ -163,7 +163,8 @@ def _in_order(printed: Printed, low: int, high: int, again: int | None) -> list[
     known = slipped if again is None else {*slipped, again}
 
     def order(units: int) -> tuple[bool, bool, int, int]:
-        return units not in slipped, units != again, abs(units - middle), units
+        other = units not in slipped
+        return other, other and units != again, abs(units - middle), units
 
     near = sorted({*every, *known}, key=order)
     return [units for units in near if low <= units <= high and units]

@@ -252,9 +252,7 @@ def _bars(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
 
 
 def _marks(axes: Axes, places: Sequence[tuple[float, ReachRow]]) -> None:
-    """A ring for the recomputed value, an arrowhead where that is beyond the scale; a cross on what is out of
-    reach.
-    """
+    """A ring for the recomputed value, or an arrowhead beyond the scale; a cross on what is out of reach."""
     known = [(row.here, place) for place, row in places if row.here is not None]
     for units, place in known:
         if abs(units) > FURTHEST:
