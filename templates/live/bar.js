@@ -63,7 +63,7 @@ function fillSure(look, name, row) {
     return make(goto ? "button" : "span", { type: goto && "button", "data-goto": goto }, make("code", {}, called), `${rows} ${percent(share)} `, bar);
   });
   const wide = expanded ? [`, U = ${expanded}`, ...behind(name), ` with k = ${factor} for 95\u00a0%`, doubt ? `; ${doubt}` : ""] : [];
-  fillLine("bar-sure", make("span", { class: "says" }, "uncertainty"), `u = ${u}`, ...behind(name), ...wide, ...from, ...second);
+  fillLine("bar-sure", make("span", { class: "says" }, "known to"), `u = ${u}`, ...behind(name), ...wide, ...from, ...second);
 }
 
 function fillLine(id, ...nodes) {
