@@ -114,9 +114,13 @@ def grid(
         thinned,
     )
     hangs_on = repr((names, own, words, sizes))
-    shown = with_passes(every, sheet, _PASSES[-1])
-    # Where none is enough, they are not laid out for nothing.
-    last = next((last for last in _PASSES if loops_settle(shown, sheet, last)), PASSES)
+    shown, done = every, 1
+    for last in _PASSES:
+        shown, done = with_passes(shown, sheet, last, done), last
+        if loops_settle(shown, sheet, last):
+            break
+    else:
+        last = PASSES  # where none is enough, they are not laid out for nothing
     for times in _TIMES:
         parts = [hangs_on, str(times), str(last)]
         told = of_sheet(whole, "formulas of the workbook", parts, partial(make, times))

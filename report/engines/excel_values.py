@@ -111,30 +111,27 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     return shown | {root["check"]: tuple(check)}
 
 
-def with_passes(values: Values, sheet: Sheet, last: int = PASSES) -> Values:
+def with_passes(values: Values, sheet: Sheet, last: int = PASSES, done: int = 1) -> Values:
     """The values with those of the passes of a sheet's loops that have no columns of their own.
 
-    `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`. `last`: up
-    to which pass.
+    `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`, with as many
+    passes as are `done`. `last`: up to which pass.
     """
     first = [each for each in passes_of(sheet).values() if each.number == 1]
     if not first:
         return values
-    begun = {
-        pass_name(column.name, 0): pass_name(column.name, 1)
-        for loop in sheet.loops
-        for column in loop.iterated
-    }
-    ours = {each.name for each in first}
-    program = Program.of(values.sheet, tuple(name for name in values.value if name not in ours))
-    laid, here = Laid(values.sheet, dict(values.layouts)), values
-    value, status = dict(values.value), dict(values.status)
-    for number in range(2, last + 1):
-        here = again(here, begun, program, laid)
+    iterated = [column.name for loop in sheet.loops for column in loop.iterated]
+    ours, names = {each.name for each in first}, [column.name for column in values.sheet.columns]
+    program = Program.of(values.sheet, tuple(name for name in names if name not in ours))
+    laid, value, status = Laid(values.sheet, dict(values.layouts)), dict(values.value), dict(values.status)
+    every = replace(values, value=value, status=status)
+    for number in range(done + 1, last + 1):
+        begun = {pass_name(name, 0): pass_name(name, number - 1) for name in iterated}
+        here = again(every, begun, program, laid)
         for each in first:
             name = pass_name(each.of, number)
             value[name], status[name] = here.value[each.name], here.status[each.name]
-    return replace(values, value=value, status=status)
+    return every
 
 
 def loops_settle(values: Values, sheet: Sheet, last: int) -> bool:

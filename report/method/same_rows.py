@@ -52,8 +52,10 @@ class SameRows:
         named = set[str]().union(*(self.below[name] for name in lines))
         for column in self.sheet.columns:
             own = replace(column, spare=False) if column.spare and column.name in named else column
-            looks_at = dict.fromkeys((*column.alongside, *self._alongside(column)))
-            yield replace(own, alongside=tuple(looks_at)) if column.name in self.sums else own
+            if column.name in self.sums:
+                looks_at = dict.fromkeys((*column.alongside, *self._alongside(column)))
+                own = replace(own, alongside=tuple(looks_at))
+            yield own
 
     def _alongside(self, total: Column) -> Iterator[Column]:
         """What a column that sums over rows asks whether a row has a value."""
@@ -68,7 +70,7 @@ class SameRows:
         if groups is None:
             return {name for name in together if not self.sums & self.below[name]}
         # What these sums name on the groups, although their own rows are another result's.
-        sums = (self.sheet[name] for name in together if axis in self.over.get(name, ()))
+        sums = (self.sheet[name] for name in together if axis in self.over[name])
         near = {each.name for column in sums for each in self.sheet.precedents(column)}
         own = {groups.members, groups.members.of}
         below = {name: self.sums & self.below[name] for name in near}
