@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +27,7 @@ from ..engines.numpy_beside import BESIDE, Beside
 from ..inputs.inputs import Inputs
 from ..judge.enclosure import Enclosure
 from ..laws import Samples
+from ..machine.threads import in_threads
 from ..quantity import SMALLEST
 from ..result.uncertain import Budget, Distributed, ErrorSource
 from ..sheet import Sheet
@@ -99,15 +101,20 @@ def draw(
     told: list[tuple[float, ...]] = []
     lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
 
-    for number, batch in enumerate(drawn.batches(size, most), start=1):
-        step(f"drawing {number * size} times")
+    def batch_told(batch: dict[str, Array]) -> tuple[Array, int, tuple[float, ...]]:
         own, there = drawn.of(batch, row)
-        found.append(own[there])
-        lost += own.size - found[-1].size
-        if found[-1].size:
-            told.append(_told(found[-1], budget.level)[0])
-        if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
-            break
+        own = own[there]
+        return own, there.size - own.size, _told(own, budget.level)[0]
+
+    with closing(in_threads(batch_told, drawn.batches(size, most))) as batches:
+        for number, (own, without, of_batch) in enumerate(batches, start=1):
+            step(f"drawing {number * size} times")
+            found.append(own)
+            lost += without
+            if own.size:
+                told.append(of_batch)
+            if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
+                break
     return _distributed(np.concatenate(found), lost, budget, tolerance, told)
 
 
