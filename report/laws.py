@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _NODES = 200
+_NARROW = 1e-6
+"""Between ends that are so near, in standard deviations, a normal distribution is level to 12 digits."""
 _FAR = 12.0
 """Beyond so many standard deviations a normal distribution holds less than a double can tell of 1."""
 
@@ -87,10 +89,10 @@ class _Turned(Law):
         return -self.of.moment(power) if power % 2 else self.of.moment(power)
 
     def below(self, z: float) -> float:
-        return 1 - self.of.below(-z)
+        return self.of.above(-z)
 
     def above(self, z: float) -> float:
-        return 1 - self.of.above(-z)
+        return self.of.below(-z)
 
     def quantile(self, shares: Array) -> Array:
         return -self.of.quantile(1 - shares)
@@ -116,6 +118,14 @@ class Exponential(Law):
         (0.0, 0.6321)
         """
         return -math.expm1(-(z + 1)) if z > -1 else 0.0
+
+    def above(self, z: float) -> float:
+        """As above, where it is little, too.
+
+        >>> Exponential().above(99.0) == math.exp(-100)
+        True
+        """
+        return math.exp(-(z + 1)) if z > -1 else 1.0
 
     def quantile(self, shares: Array) -> Array:
         """As above."""
@@ -166,22 +176,32 @@ class TruncatedNormal(Law):
         """As above."""
         return self._moments[power - 1]
 
-    @property
-    def _ends(self) -> tuple[float, float]:
-        return _normal(self.low), _normal(self.high)
+    def _share(self, low: float, high: float) -> float:
+        """Of what is within the ends, how much lies between two others, in the same unit."""
+        low, high = (min(max(z, self.low), self.high) for z in (low, high))
+        return _normal(low, high) / _normal(self.low, self.high)
 
     def below(self, z: float) -> float:
         """As above."""
-        least, most = self._ends
-        return min(max((_normal(z * self.sd) - least) / (most - least), 0.0), 1.0)
+        return self._share(-math.inf, z * self.sd)
+
+    def above(self, z: float) -> float:
+        """As above, where it is little, too.
+
+        >>> round(TruncatedNormal(-1e-20, 1e-20).above(1.0), 4)
+        0.2113
+        """
+        return self._share(z * self.sd, math.inf)
 
     def quantile(self, shares: Array) -> Array:
         """As above."""
         from scipy.special import ndtri
 
-        least, most = self._ends
-        found = np.clip(ndtri(least + shares * (most - least)), self.low, self.high)
-        drawn: Array = found / self.sd
+        if self.high - self.low < _NARROW:
+            found: Array = self.low + shares * (self.high - self.low)
+        else:
+            found = ndtri(_normal(-math.inf, self.low) + shares * _normal(self.low, self.high))
+        drawn: Array = np.clip(found, self.low, self.high) / self.sd
         return drawn
 
 
@@ -229,12 +249,24 @@ class Samples(Law):
         rows = np.minimum((shares * self.errors.size).astype(np.intp), self.errors.size - 1)
         return self.errors[rows]
 
+    def turned(self) -> Samples:
+        """As above."""
+        return Samples(-self.errors, self.table)
+
     def correlation(self, other: Samples) -> float:
         """That with another column of the same table."""
         products = (self.errors - self.mean) * (other.errors - other.mean)
         return min(max(float(products.sum()) / (self.errors.size - 1), -1.0), 1.0)
 
 
-def _normal(z: float) -> float:
-    """The share of a normal distribution below z standard deviations."""
-    return math.erfc(-z / math.sqrt(2)) / 2
+def _normal(low: float, high: float) -> float:
+    """The share of a normal distribution between two numbers of standard deviations.
+
+    By what keeps its digits: beside 0 that is little, far out what is left to the end.
+    """
+    low, high = low / math.sqrt(2), high / math.sqrt(2)
+    if low > 1:
+        return (math.erfc(low) - math.erfc(high)) / 2
+    if high < -1:
+        return (math.erfc(-high) - math.erfc(-low)) / 2
+    return (math.erf(high) - math.erf(low)) / 2

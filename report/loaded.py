@@ -104,7 +104,8 @@ class Estimates(NDArrayOperatorsMixin):
         KeyError
             There is no such row.
         """
-        places = [n for n, own in enumerate(zip(self.index, self.words, strict=True)) if row in own]
+        named = ([n for n, each in enumerate(own) if each == row] for own in (self.index, self.words))
+        places = next(filter(None, named), [])
         if not places:
             known = listing([*self.index, *filter(None, dict.fromkeys(self.words))])
             raise KeyError(f"{self.name} has no row '{row}': {known or 'it is a single number'}")

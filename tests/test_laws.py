@@ -54,6 +54,24 @@ def test_a_law_is_that_of_scipy(name: str) -> None:
     assert law.turned().quantile(shares) == pytest.approx(-known.isf(shares), rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["exponential", "0 to inf", "-1 to inf"])
+def test_what_is_little_far_out_keeps_its_digits(name: str) -> None:
+    law, known = LAWS[name]
+    for z in (3.0, 9.0, 20.0):
+        tail = float(known.sf(z))
+        assert law.above(z) == pytest.approx(tail, rel=1e-9)
+        assert law.turned().below(-z) == pytest.approx(tail, rel=1e-9)
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-7, 1e-20, 1e-60])
+def test_a_normal_error_far_wider_than_its_ends_is_rectangular(width: float) -> None:
+    law = TruncatedNormal(-width, 3 * width)
+    shares, level = np.array([0.0, 0.25, 0.5, 1.0]), stats.uniform(-math.sqrt(3) / 2, 2 * math.sqrt(3))
+    assert law.quantile(shares) == pytest.approx(level.ppf(shares), abs=1e-5)
+    for z in (-0.5, 0.0, 1.0):
+        assert (law.below(z), law.above(z)) == pytest.approx((level.cdf(z), level.sf(z)), abs=1e-5)
+
+
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("level", [0.5, 0.95, 0.9545])
 def test_a_coverage_factor_holds_its_share_around_the_value(name: str, level: float) -> None:
@@ -224,6 +242,32 @@ def test_draws_of_one_table_stay_together(made: Make) -> None:
     found = draw(report.inputs, report.values, budget, 200_000, tolerance=0.0)
     assert found.u == pytest.approx(budget.u, rel=0.01)
     assert found.symmetric == pytest.approx(np.quantile(both.sum(axis=1), [0.025, 0.975]), abs=0.02)
+
+
+def test_draws_whose_sum_does_not_vary(made: Make) -> None:
+    """Shares of one whole: beside them another error is alone."""
+    draws = "x_1 [1],x_2 [1]\n" + 50 * "0.25,0.75\n0.5,0.5\n0.75,0.25\n"
+    more = '[uncertainty]\nx_2 = "samples = draws.csv"\n'
+    report = made("0.5, samples = draws.csv", "0.5", "2.0, +-0.1 rect", draws=draws, more=more)
+    budget = Spread(report.inputs, report.values).budget("y", 0)
+    assert budget.expanded == pytest.approx(0.095, rel=1e-9)
+
+
+@pytest.mark.parametrize("error", ["+-1e-251 rect", "u = 1e-251"])
+def test_what_is_next_to_nothing_beside_another_error(made: Make, error: str) -> None:
+    report = made("1.00, +-0.05 tri", f"1e-250, {error}")
+    budget = Spread(report.inputs, report.values).budget("y", 0)
+    assert budget.factor == pytest.approx(math.sqrt(6) * (1 - math.sqrt(0.05)), rel=1e-6)
+
+
+def test_two_errors_of_one_number_that_are_said_alike(made: Make) -> None:
+    """They are two, in a budget and where they are drawn."""
+    error = "u = 0.50, min = 0.5, max = 1.5"
+    report = made(f"1.00, {error}; {error}")
+    budget = Spread(report.inputs, report.values).budget("y", 0)
+    assert len({each.source.name for each in budget.contributions}) == 2
+    found = draw(report.inputs, report.values, budget, 100_000, tolerance=0.0)
+    assert found.u == pytest.approx(budget.u, rel=0.01)
 
 
 def test_a_square_of_what_is_exponential_to_second_order(tmp_path: Path) -> None:

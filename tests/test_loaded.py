@@ -65,3 +65,9 @@ def test_a_group_has_its_word(tmp_path: Path) -> None:
     ]
     with pytest.raises(KeyError, match=f"1, 2, 3, .*{word}"):
         report["level"]["of nobody"]
+
+
+def test_a_number_is_that_of_a_row_though_a_word_is_the_same(tmp_path: Path) -> None:
+    rows = tuple(("1" if word == "B" else word, y) for word, y in grouped.FEW)
+    report = loopsheet.load(grouped.write(tmp_path, rows))
+    assert report["level[1]"].index == ("1",)

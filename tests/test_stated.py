@@ -344,6 +344,27 @@ def test_of_correlations_those_that_clash_are_named(tmp_path: Path) -> None:
         load(tmp_path, find_workbook)
 
 
+def test_correlations_that_just_hold_together_do(tmp_path: Path) -> None:
+    """What is correlated with each of two as far as it can be: 0.6^2 + 0.8^2 is 1, and of doubles more."""
+    lines = "".join(f'    {name} = given("1", "{name}")\n' for name in "abc")
+    code = f"from loopsheet import Method, given, let\nclass Three(Method):\n{lines}"
+    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0, u = 0.1"\n' for n in "abc")
+    toml += '[uncertainty.correlation]\n"a, b" = "0.6"\n"a, c" = "0.8"\n'
+    (tmp_path / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    found = load(tmp_path, find_workbook).uncertainty.correlations
+    assert found == {("a", "b"): 0.6, ("a", "c"): 0.8}
+    (tmp_path / "report.toml").write_text(toml.replace('"0.8"', '"0.8001"'), encoding="utf-8")
+    with pytest.raises(InputError, match="cannot hold together"):
+        load(tmp_path, find_workbook)
+
+
+@pytest.mark.parametrize("share", ["99.99999999999999999 %", "0.00000000000000000001"])
+def test_a_coverage_probability_that_is_none(read: Read, share: str) -> None:
+    with pytest.raises(InputError, match="LS431"):
+        read(f'v = "U = 0.1, p = {share}"\n')
+
+
 def test_a_column_of_uncertainties_and_parentheses_are_one_too_many(read: Read) -> None:
     csv = "test,v [m/s],e [1],x_p [um],u(x_p) [um]\n1,2.334,0.530,23.5,0.1\n2,2.940,0.512,29.7(2),0\n"
     with pytest.raises(InputError) as refused:

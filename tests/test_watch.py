@@ -184,3 +184,6 @@ def test_what_is_looked_at(tmp_path: Path) -> None:
     (tmp_path / "data" / "b.csv").write_text("22")
     assert _look(tmp_path, ["data/b.csv"]) != first
     assert _look(tmp_path / "none", ["x"]) == {}
+    # What report.toml names, though nothing could be read of it.
+    (tmp_path / "report.toml").write_text('[measurements]\nfile = "data/b.csv"\n')
+    assert set(_look(tmp_path, [])) == {"a.csv", "data/b.csv", "report.toml"}

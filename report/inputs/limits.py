@@ -31,7 +31,7 @@ from .expected import NO_WORDS, Words, check_expected, row_of
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
-from .stated import LARGEST, StatementError
+from .stated import LARGEST, LEVELS, StatementError
 
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
@@ -46,7 +46,6 @@ _ONE = re.compile(r"(?P<sign><=|>=|≤|≥)\s*(?P<number>.+)")
 _OWN = re.compile(r",\s*(?P<key>[A-Za-z]\w*)\s*=\s*(?P<text>.*?)\s*(?=,\s*[A-Za-z]\w*\s*=|$)")
 """Behind limits, a part of a rule; a comma that no key follows belongs to what is before it."""
 _SHARE = re.compile(r"(?:(?P<times>[0-9.]+)\s*)?U")
-_LEVELS = (Fraction(1, 100), Fraction(999_999, 1_000_000))
 
 
 @dataclass(frozen=True)
@@ -270,7 +269,7 @@ def _level(text: str) -> float:
         number = read_number(text.removesuffix("%").strip()) / (100 if text.endswith("%") else 1)
     except NumberError:
         number = Fraction(0)
-    if not _LEVELS[0] <= number <= _LEVELS[1]:
+    if not LEVELS[0] <= number <= LEVELS[1]:
         raise StatementError("LS442", text, 0, "a level is a probability from 1 % to 99.9999 %")
     return float(number)
 

@@ -64,6 +64,8 @@ _CUT = {"u", "U"}
 """What may be cut off."""
 LARGEST = 10**60
 """Of whatever unit: its square, and that of what follows from it, shall be numbers still."""
+LEVELS = Fraction(1, 100), Fraction(999_999, 1_000_000)
+"""The least coverage probability, and the largest."""
 _LIMIT_KEYS = {"k", "p", "dof"}
 
 
@@ -408,13 +410,13 @@ def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[st
             raise StatementError("LS431", field, start, "behind the sign stands a number") from None
         whole = number.denominator == 1
         fits = {
-            "p": 0 < number < 1,
+            "p": LEVELS[0] <= number <= LEVELS[1],
             "n": number >= 2 and whole and not percent,
             "k": 0 < number <= MOST_K and not percent,
         }
         if not fits.get(name, number > 0 and not percent):
             hints = {
-                "p": "a probability is between 0 and 1, or 95 %",
+                "p": "a coverage probability is from 1 % to 99.9999 %",
                 "n": "two readings or more",
                 "k": "k is 2 or 3, say, and hardly more; a coverage probability is p = 95 %",
             }

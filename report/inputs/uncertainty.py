@@ -372,7 +372,7 @@ class _Reader:
 
     def correlations(
         self, several: Collection[str], paired: Collection[str]
-    ) -> Iterator[tuple[tuple[str, str], float]]:
+    ) -> Iterator[tuple[tuple[str, str], Fraction]]:
         """Coefficients by the names of two columns; one of 0 says nothing."""
         seen: set[frozenset[str]] = set()
         for key in self.names("correlation"):
@@ -399,7 +399,7 @@ class _Reader:
             if reason := self.why_not(text, pair, several, paired):
                 self.findings.add("LS434", self.toml.value(*path), reason=reason, suggestion="")
                 continue
-            if number := float(read_number(text)):
+            if number := read_number(text):
                 yield (pair[0], pair[1]), number
 
     def why_not(
@@ -420,10 +420,13 @@ class _Reader:
             return f"what {odd[0]} correlates with follows from its paired readings"
         return ""
 
-    def possible(self, found: dict[tuple[str, str], float]) -> dict[tuple[str, str], float]:
-        """Coefficients if they can hold together: then no combination has a negative variance."""
+    def possible(self, found: dict[tuple[str, str], Fraction]) -> dict[tuple[str, str], float]:
+        """Coefficients if they can hold together: then no combination has a negative variance.
+
+        It is asked of them as they are written: 0.6 and 0.8 as doubles are a little more.
+        """
         names = sorted({name for pair in found for name in pair})
-        coefficients = {frozenset(pair): Fraction(r) for pair, r in found.items()}
+        coefficients = {frozenset(pair): r for pair, r in found.items()}
 
         def hold(names: Sequence[str]) -> bool:
             return _is_covariance([
@@ -432,7 +435,7 @@ class _Reader:
             ])  # fmt: skip
 
         if hold(names):
-            return found
+            return {pair: float(r) for pair, r in found.items()}
         for name in names.copy():  # those alone without which the others could
             if not hold(others := [each for each in names if each != name]):
                 names = others

@@ -281,14 +281,15 @@ def convolved(
     together: dict[str, list[int]] = {}
     for n in ended:
         together.setdefault(f"table {table}" if (table := sources[n].table) else f"alone {n}", []).append(n)
-    parts = [_one([(sources[n], float(sizes[n])) for n in of]) for of in together.values()]
+    found = (_one([(sources[n], float(sizes[n])) for n in of]) for of in together.values())
+    parts = [part for part in found if abs(part.size) > ROUNDED]
     rest = sizes.copy()
     rest[ended] = 0.0
     size, dof = of_sum(sources, rest, [each for each in pairs if not {*each[:2]} & {*ended}])
-    if size:
+    if size > ROUNDED:
         shape = Shape.NORMAL if math.isinf(dof) else Shape.STUDENT
         parts.append(_Part(shape, size, dof, of=int(np.count_nonzero(rest))))
-    return Convolved(tuple(_fewer(parts)))
+    return Convolved(tuple(_fewer(parts))) if parts else None
 
 
 def _fewer(parts: Sequence[_Part]) -> list[_Part]:
@@ -314,7 +315,7 @@ def _one(of: Sequence[tuple[ErrorSource, float]]) -> _Part:
     told = [size * source.law.errors for source, size in of if isinstance(source.law, Samples)]
     errors: Array = np.sum(told, axis=0)
     sd = float(np.std(errors, ddof=1))
-    return _Part(Shape.SAMPLES, sd, math.inf, Samples(errors / sd, first.table))
+    return _Part(Shape.SAMPLES, sd, math.inf, Samples(errors / sd if sd else errors, first.table))
 
 
 # --- assigned and covered

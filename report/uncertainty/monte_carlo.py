@@ -220,10 +220,10 @@ class _Draws:
         if self.mixed:
             together = self.generator.standard_normal((size, len(self.sources))) @ self.root.T
         scales: dict[str, Array] = {}
-        rows: dict[str, Array] = {}
+        rows: dict[str | int, Array] = {}
         for n, source in enumerate(self.sources):
             if source.law is not None and n not in self.mixed:
-                table = source.table or source.name
+                table = source.table or n
                 if table not in rows:  # what stands in one row of a table of draws is drawn together
                     rows[table] = self.generator.random(size)
                 yield source.law.quantile(rows[table])

@@ -36,9 +36,11 @@ def _own(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
                 continue
             errors = () if column.exact and number.stated is None else number.errors
             name = address(column.name, label)
-            for error in errors:
+            for n, error in enumerate(errors):
                 if error.width:
                     told = f"{name}, {error.said}" if len(errors) > 1 else name
+                    if alike := sum(each.said == error.said for each in errors[:n]):
+                        told += f" ({alike + 1})"
                     moves = ((column.name, row, error.u),)
                     yield ErrorSource(
                         told, error.shape, error.dof, moves, error.said, error.sample, error.law

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import re
 import signal
 import sys
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +25,9 @@ PAUSE = 0.2
 
 MOST = 12
 """Of the numbers that moved, how many are named."""
+
+_ELSEWHERE = re.compile(r"""["']([^"'\x00-\x1f]+/[^"'\x00-\x1f]+)["']""")
+"""A string of TOML that may name a file in another folder."""
 
 Look = dict[str, tuple[int, int, int]]
 
@@ -79,12 +84,12 @@ def _watch(folder: Path, result: Path, build: Callable[[], Iterable[str]]) -> No
 
 
 def _look(folder: Path, names: Iterable[str]) -> Look:
-    """What there is, and when it was written."""
+    """What there is, and when it was written; and of what may lie elsewhere what report.toml names."""
     found: Look = {}
-    try:
-        files = {*(path.name for path in folder.iterdir()), *names}
-    except OSError:
-        files = {*names}
+    files = {*names}
+    with suppress(OSError, UnicodeError):
+        files |= {path.name for path in folder.iterdir()}
+        files |= {*_ELSEWHERE.findall((folder / "report.toml").read_text(encoding="utf-8"))}
     for name in sorted(files):
         try:
             status = (folder / name).stat()

@@ -13,7 +13,8 @@ from .escape import html, tex
 
 _TOKEN = re.compile(
     r"(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(?:_\w+)?|[°%])"
-    r"|(?P<power>\s*(?:\^|\*\*)\s*\(?(?P<exponent>[+-]?\w+(?:[./]\d+)?)\)?|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
+    r"|(?P<power>\s*(?:\^|\*\*)\s*(?:\(\s*(?P<enclosed>[^()]+?)\s*\)|(?P<exponent>[+-]?\w+(?:\.\d+)?))"
+    r"|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
     r"|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<over>\s*[/∕]\s*)|(?P<other>.)"
 )
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
@@ -24,7 +25,8 @@ def _tokens(unit: str) -> Iterable[tuple[str, str]]:
     for match in _TOKEN.finditer(unit.strip()):
         kind = match.lastgroup or "other"
         if match["power"]:
-            yield "power", (match["exponent"] or match["raised"]).translate(_LOWERED).removeprefix("+")
+            exponent = match["enclosed"] or match["exponent"] or match["raised"]
+            yield "power", re.sub(r"\s", "", exponent).translate(_LOWERED).removeprefix("+")
         elif kind == "name":
             yield kind, micro(match["name"])
         else:

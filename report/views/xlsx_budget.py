@@ -120,6 +120,11 @@ def _write_as_issued(sheet: Any, style: Style, report: Report, grid: Grid) -> st
     return f"AND(${column}$5:${column}${4 + len(given)})"
 
 
+def _fourth(cells: str) -> str:
+    """The fourth powers of cells: a power that is too small for a double is an error to LibreOffice."""
+    return "*".join([cells] * 4)
+
+
 class _Written:
     """One budget."""
 
@@ -360,7 +365,10 @@ class _Written:
         row = self.statement(row + len(lines), at)
         if budget.shape is Shape.CONVOLVED:
             told = f"{budget.because}, as issued: they do not follow an edit"
-            instead = "a normal or t distribution or a source that dominates: sources are not as issued"
+            instead = (
+                "a normal or t distribution or a source that dominates, and is at least as large as issued: "
+                "sources are not as issued"
+            )
             self.style.text(self.sheet, row, 0, "k comes from", "name")
             said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
             self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
@@ -371,25 +379,33 @@ class _Written:
         return self.limits(row, own, at)
 
     def second_order(self, first: str) -> str:
-        """The formula of what is taken from the variance, if it is that: as much of it as was issued."""
-        second, u = self.budget.second, self.budget.u
-        return f"=-({first})*{-second / (u * u - second)!r}" if second < 0 else ""
+        """The formula of what is taken from the variance, if it is that: as much of it as was issued.
+
+        Where the sources have other shares nobody knows how much: nothing is taken, and U is not too small.
+        """
+        second, issued = self.budget.second, self.budget.u**2 - self.budget.second
+        if second >= 0:
+            return ""
+        same = ",".join(self.same_shares(f"({first})^2", issued**2))
+        return f"=IF(AND({same}),-({first})*{-second / issued!r},0)"
 
     def unmoved(self, at: Mapping[str, str]) -> str:
-        """Whether the sources are as issued: the fourth powers of their shares, shape by shape.
+        """Whether the sources are as issued, and their degrees of freedom."""
+        same = ",".join(self.same_shares(f"{at['u']}^4", self.budget.u**4))
+        return f"AND({same},ABS({at['dof']}/{min(self.budget.dof, _UNLIMITED):.0f}-1)<0.000001)"
+
+    def same_shares(self, whole: str, issued: float) -> Iterator[str]:
+        """Whether the fourth powers of the sources' shares are as issued, shape by shape.
 
         As the variances make u and the fourth powers what is told besides, it is the same where these are.
+        `whole`, `issued`: the square of the variance of which they are shares, and that in SI.
         """
         shapes: dict[Shape, float] = {}
-        u = self.budget.u
         for each in self.budget.contributions:
-            shapes[each.source.shape] = shapes.get(each.source.shape, 0.0) + (each.u / u) ** 4
+            shapes[each.source.shape] = shapes.get(each.source.shape, 0.0) + each.u**4 / issued
         own, kind = (f"${c}${self.first + 1}:${c}${self.last + 1}" for c in "HE")
-        same = [
-            f'ABS(SUMPRODUCT(({kind}="{shape}")*({own})^4)/{at["u"]}^4-({now:.15f}))<0.000001'
-            for shape, now in shapes.items()
-        ]
-        return f"AND({','.join(same)},ABS({at['dof']}/{min(self.budget.dof, _UNLIMITED):.0f}-1)<0.000001)"
+        for shape, now in shapes.items():
+            yield f'ABS(SUMPRODUCT(({kind}="{shape}")*{_fourth(own)})/{whole}-({now:.15f}))<0.000001'
 
     def limits(self, row: int, own: str, at: Mapping[str, str]) -> int:
         """The decision rule, where the cell has limits."""
@@ -420,7 +436,7 @@ class _Written:
         """What stands below in the formula of Welch and Satterthwaite: sources of one estimate are one."""
         samples = [each.source.sample for each in self.lines]
         if not any(sample and samples.count(sample) > 1 for sample in samples):
-            return f"SUMPRODUCT(({own})^4/({dof}))"
+            return f"SUMPRODUCT({_fourth(own)}/({dof}))"
         self.style.text(self.sheet, self.top + 1, len(_COLUMNS), "estimate", "head")
         for row, sample in enumerate(samples, start=self.first):
             number = samples.index(sample) if sample else row - self.first
@@ -464,7 +480,9 @@ class _Written:
             factors[budget.shape.value] = as_issued(p, budget.level, budget.factor)
         told = self.by_shape(own, at, factors, otherwise)
         if self.is_joint(budget):
-            return f"IF({self.unmoved(at)},{factors[budget.shape.value]},{told})"
+            issued = factors[budget.shape.value]
+            least = f"IF(ISNUMBER({issued}),MAX({told},{issued}),{told})"
+            return f"IF({self.unmoved(at)},{issued},{least})"
         return told
 
     @staticmethod

@@ -51,7 +51,11 @@ class Trace {
     const axis = this.declared[name]?.axis;
     if (axis === undefined) return -1;
     if (axis === null) return index === "" ? 0 : -1;
-    this.found[axis] ??= new Map(this.sheet.layouts[axis].labels.flatMap((label, row) => [[this.words[axis]?.[label], row], [label.join("-"), row]]));
+    const { labels } = this.sheet.layouts[axis];
+    this.found[axis] ??= new Map([
+      ...labels.map((_, row) => [this.word(name, row), row]),
+      ...labels.map((label, row) => [label.join("-"), row]), // a number is nobody's word
+    ]);
     return this.found[axis].get(index) ?? -1;
   }
 
