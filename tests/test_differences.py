@@ -18,7 +18,16 @@ from msgspec.structs import replace
 from loopsheet.report.archive.differences import Differences, Move, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
-from loopsheet.report.files.values import Column, Conformity, Oddity, Published, Result, Unit, read_result
+from loopsheet.report.files.values import (
+    Column,
+    Conformity,
+    Expanded,
+    Oddity,
+    Published,
+    Result,
+    Unit,
+    read_result,
+)
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.views.differences import as_markdown, as_text, moved
 
@@ -113,6 +122,20 @@ def test_another_uncertainty_is_told_also_where_the_number_moved() -> None:
     unknown = compare(before, with_column("v", replace(sure, u=[None, 0.2])))
     assert [(move.address, moved(move)) for move in unknown.moved] == [("u(v[1])", ("0.1", "not known", ""))]
     assert compare(before, RESULT).same == 4  # a file of before does not tell them
+
+
+def test_another_expanded_uncertainty_is_told_where_u_is_the_same() -> None:
+    """Fewer degrees of freedom, or another distribution of the same standard uncertainty."""
+    sure = Expanded(cell="m", U=0.5, k=2.0, level=0.95)
+    column = Column(unit="1", rule="(12) m = a", value=1.25, status="ok", u=0.25)
+    before = replace(with_column("m", column), expanded=[sure])
+    assert not compare(before, before).any
+    found = compare(before, replace(before, expanded=[replace(sure, U=1.0, k=4.0, dof=2.0)]))
+    (move,) = found.moved
+    assert (move.address, move.before, move.after) == ("U(m)", 0.5, 1.0)
+    # With another u it is that which is told.
+    wider = replace(with_column("m", replace(column, u=0.5)), expanded=[replace(sure, U=1.0)])
+    assert [move.address for move in compare(before, wider).moved] == ["u(m)"]
 
 
 def test_what_the_user_gave_comes_first_then_scalars() -> None:

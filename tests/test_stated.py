@@ -45,6 +45,8 @@ def errors(text: str, number: str = "12.50") -> tuple[tuple[float, Shape, float]
         ("0.5 % of reading + 2 digits", (0.0625 + 0.02) / 3**0.5, Shape.RECTANGULAR, math.inf),
         ("0.5% + 10 um tri", (0.0625 + 0.01) / 6**0.5, Shape.TRIANGULAR, math.inf),
         ("u = 1 % of reading", 0.125, Shape.NORMAL, math.inf),
+        ("u = 20 ppm", 0.00025, Shape.NORMAL, math.inf),
+        ("20 ppm of reading rect", 0.00025 / 3**0.5, Shape.RECTANGULAR, math.inf),
         ("s = 0.03, n = 9", 0.01, Shape.STUDENT, 8),
         ("s = 0.02, n = 2", 0.02 / 2**0.5, Shape.STUDENT, 1),
         ("s = 0.02, n = 4, dof = 24", 0.01, Shape.STUDENT, 24),

@@ -15,6 +15,7 @@ from two_reports import forged
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.inputs import load
+from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.messages.errors import InputError, render
 from loopsheet.report.result.uncertain import Budget
@@ -129,6 +130,36 @@ def test_a_number_is_the_same_in_one_folder_and_in_two(apart: Path, tmp_path: Pa
     m, V = (several.budget(name, 0) for name in "mV")
     alone = other.value and math.hypot(m.u / m.value, V.u / V.value) * budget(apart)[0].value
     assert abs(alone - budget(apart)[0].u) > 1e-4 * alone
+
+
+SQUARE = """
+a, b = given("a", "1"), given("b", "1")
+c, d = computed("c", "1", 2 * a), computed("d", "1", b**2)
+HEADLINE = ["c", "d"]
+"""
+AGAIN = """
+c, d = given("c", "1"), given("d", "1")
+e, f = computed("e", "1", c * 3), computed("f", "1", d * 3)
+HEADLINE = ["e", "f"]
+"""
+
+
+@pytest.mark.parametrize("error", ["u = 0.2, min = 0", "exponential"])
+def test_a_distribution_comes_with_a_number(tmp_path: Path, error: str) -> None:
+    at = folder(tmp_path / "again", AGAIN, taken(c="c", d="d"))
+    build(folder(at / "ball", SQUARE, {"a": f"0.1, {error}", "b": "1.0, u = 0.1"}))
+    (own, _), (other, _) = budget(at / "ball", "c"), budget(at, "e")
+    assert other.factor == pytest.approx(own.factor, rel=1e-9) != pytest.approx(1.96, abs=0.01)
+    assert other.u == pytest.approx(3 * own.u, rel=1e-9)
+
+
+def test_what_is_doubted_of_a_number_is_told_where_it_is_taken(tmp_path: Path) -> None:
+    at = folder(tmp_path / "again", AGAIN, taken(c="c", d="d"))
+    build(folder(at / "ball", SQUARE, {"a": "0.1, u = 0.01", "b": "0.1, u = 0.1"}))
+    told = {check.name: check for check in oddities(Study(at).computed) if check.kind == "taken"}
+    assert told["c"].note == ""
+    assert told["d"].note == "warning"
+    assert "ball/out/values.json, where of d: U does not hold: second order counts" in told["d"].message
 
 
 def test_monte_carlo_draws_what_is_shared_once(apart: Path) -> None:

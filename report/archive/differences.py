@@ -146,6 +146,7 @@ def compare(
             kind, rank = "result", (1, headline.index(name))
         there, words = new.cells, dict(before.known(name).items() & after.known(name).items())
         places, u_before, u_after = last.places(name), old.uncertainties, new.uncertainties
+        U_before, U_after = _expanded(before, name), _expanded(after, name)
         for index, was in old.cells.items():
             place = places.get(first.row(name, index))
             if place is None:
@@ -166,6 +167,10 @@ def compare(
                     u_was, u_now = ((each, "not known") for each in surer)
                     behind_all = (int(kind == "moved"), *rank)
                     moved.append((behind_all, _move(f"u({cell})", word, kind, new, u_was, u_now, True)))
+                    continue
+            U_was, U_now = (each.get(at) for each, at in ((U_before, index), (U_after, place)))
+            if U_was and U_now and not _as_sure(U_was[0], U_now[0]):  # with the same u
+                moved.append(((0, *rank), _move(f"U({cell})", word, kind, new, U_was, U_now, True)))
     return Differences(
         *names,
         same,
@@ -210,6 +215,14 @@ class _Rows:
         if axis is not None and number.isdecimal():
             return f"{rows} {self.words[axis].get(int(number), number)}"
         return self.address(*named(name)) if _CELL.fullmatch(name) else name
+
+
+def _expanded(result: Result, name: str) -> dict[Index, Held]:
+    """The expanded uncertainty of the rows of a column of which it is known."""
+    every = () if result.expanded is UNSET else result.expanded
+    index = {address(name, label): label for label in result.cells[name].cells}
+    index |= {address(name, (word,)): label for label, word in result.known(name).items()}
+    return {index[each.cell]: (each.U, "not known") for each in every if each.cell in index}
 
 
 def _words(result: Result, axis: str) -> dict[int, str]:

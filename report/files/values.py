@@ -151,6 +151,31 @@ class Oddity(Form, frozen=True, kw_only=True):
     sentence: Text
 
 
+class Expanded(Form, frozen=True, kw_only=True):
+    """The expanded uncertainty of a result.
+
+    Parameters
+    ----------
+    cell : str
+        Its address.
+    U : number or null
+        In SI; null where none is known.
+    k, level : number or null
+        The coverage factor and the coverage probability.
+    dof : number or null
+        Effective degrees of freedom; null where there are no finite ones.
+    doubt : str
+        Why it may not hold; empty where it does.
+    """
+
+    cell: Text
+    U: Number
+    k: Number
+    level: Number
+    dof: Number = None
+    doubt: Text = ""
+
+
 class Conformity(Form, frozen=True, kw_only=True):
     """Whether a cell lies where it has to.
 
@@ -325,6 +350,8 @@ class Source(Form, frozen=True, kw_only=True):
     report : str
         The sha256 of that report's inputs; empty if it is this one.
     distribution : str
+    ends : two numbers or null
+        Where a normal one is cut off, in its standard deviations before that; null where it is not.
     dof : number or null
         Degrees of freedom; null where its standard uncertainty is known.
     sample : str
@@ -334,6 +361,7 @@ class Source(Form, frozen=True, kw_only=True):
     name: Text
     report: Text = ""
     distribution: Text
+    ends: tuple[Number, Number] | UnsetType = UNSET
     dof: Annotated[float, Meta(gt=0)] | None = None
     sample: Text = ""
 
@@ -400,6 +428,8 @@ class Result(Form, frozen=True, kw_only=True):
     words : table of tables
         What the rows of an index set are known by besides numbers: words of groups, names of rows.
     oddities : list of Oddity
+    expanded : list of Expanded
+        Of the results. Missing where there are none that are known.
     conformity : list of Conformity
         Missing where no cell has limits.
     proofs : table of str
@@ -425,6 +455,7 @@ class Result(Form, frozen=True, kw_only=True):
     cells: dict[Text, Column]
     words: dict[Text, dict[int, str]] | UnsetType = UNSET
     oddities: list[Oddity] = field(default_factory=list)
+    expanded: list[Expanded] | UnsetType = UNSET
     conformity: list[Conformity] | UnsetType = UNSET
     proofs: dict[Text, Text]
     rests_on: dict[Text, list[Text]] = field(default_factory=dict)

@@ -53,7 +53,7 @@ _EXPONENTIAL = "exponential"
 _TERM = re.compile(r"(?P<number>[0-9.][0-9.]*(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)")
 PERCENT = ("%", "percent")
 """Of what is a pure number itself these may be a share of it, or of 1."""
-_RELATIVE = re.compile(r"(?:%|percent)\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
+_RELATIVE = re.compile(r"(?:%|percent|ppm)\s*(?:of\s+(?:the\s+)?(?:reading|value))?")
 _DIGITS = re.compile(r"digits?")
 _CALLED = re.compile(r"[A-Za-z]\(|=\s*\(")
 """What a formula has, ``u = sqrt(N)``, and a unit has not, ``N/m^(3/2)``."""
@@ -264,7 +264,7 @@ def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -
     if begin and name not in _KEYS:
         raise StatementError("LS431", first, start, f"begin with the uncertainty itself: {EXAMPLE}")
     limits = _LIMITS.match(first)
-    if not begin and not limits and "%" not in first and "digit" not in first:
+    if not (begin or limits or re.search("%|ppm|digit", first)):
         raise StatementError("LS431", text, start, "say what the number is: u = or U =, or +- and a shape")
     if others and others[0][0][:1].isdigit():
         raise StatementError("LS431", *others[0], f"a decimal comma? write {first}.{others[0][0]}")
@@ -444,8 +444,8 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             digits += number
         elif _RELATIVE.fullmatch(behind) and unit.zero:
             raise StatementError("LS431", term, at, f"zero {unit.text} is not nothing: say how much, in K")
-        elif _RELATIVE.fullmatch(behind) and (behind not in PERCENT or unit.dimension):
-            relative += number / 100
+        elif _RELATIVE.fullmatch(behind) and (" of " in behind or unit.dimension):
+            relative += number / (1_000_000 if behind.startswith("ppm") else 100)
         elif behind in PERCENT:  # of what is a pure number: of the reading, or of 1?
             size = f"{float(number / 100 / unit.scale):.15g}"
             hint = f"say '{match['number']} % of reading', or '{size}' for that much in its unit {unit.text}"

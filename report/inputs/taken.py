@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 from ...derivations.unit_text import UnitError, coherent, parse_unit
 from ..cells.address import address, index_text, named, parts
 from ..distribution import PARTS, Error, Shape
+from ..laws import Exponential, Law, TruncatedNormal
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
 from .expected import row_of
@@ -81,6 +82,8 @@ class Taken:
     """How its rows were found, where either report knows rows by words; else empty."""
     doubtful: bool = False
     """Whether they may be others than those that are meant, though they have their numbers."""
+    doubts: tuple[str, ...] = ()
+    """Why their uncertainties may not hold there, each with its cell."""
 
     def of(self, rows: Iterable[int]) -> Taken:
         """The same of some rows."""
@@ -167,7 +170,8 @@ def read_taken(
         return None
     printed, errors = zip(*(numbers[rows[test]] for test in tests or (0,)), strict=True)
     gone = reader.spare({test: rows.get(test, ()) for test in spare}, where)
-    return Taken(file, cell, printed, errors, reader.correlations, gone, reader.told, reader.doubtful)
+    doubts = tuple(reader.doubts([rows[test] for test in tests or (0,)]))
+    return Taken(file, cell, printed, errors, reader.correlations, gone, reader.told, reader.doubtful, doubts)
 
 
 def open_result(data: bytes, file: Path, name: str, at: Location, findings: Findings) -> Result | None:
@@ -334,11 +338,21 @@ class _Reader:
             sample = source.sample and (
                 source.sample if source.report else f"{found.inputs}: {source.sample}"
             )
-            dof = math.inf if source.dof is None else source.dof
-            error = Error(Fraction(1), _shape(source.distribution), dof, "", sample)
+            dof, (shape, law) = math.inf if source.dof is None else source.dof, _shape(source)
+            error = Error(Fraction(1), shape, dof, "", sample, law)
             yield TakenError(_origin(found, source), moved, error)
         if rest := found.second.get(cell, 0.0):
             yield TakenError((found.inputs, f"second order of {cell}"), rest, Error(Fraction(1)))
+
+    def doubts(self, labels: Sequence[Index]) -> Iterator[str]:
+        """Why the uncertainties of some rows may not hold."""
+        from msgspec import UNSET
+
+        expanded = [] if self.found.expanded is UNSET else self.found.expanded
+        known = {each.cell: each.doubt for each in expanded if each.doubt}
+        for label in labels:
+            words = {address(self.name, label), address(self.name, (self.words.get(label, ""),))}
+            yield from (f"{cell}: {known[cell]}" for cell in sorted(words & known.keys()))
 
     def value(self, label: Index) -> float:
         return float(self.cells[label][0] or 0.0)
@@ -355,11 +369,18 @@ class _Reader:
         self.findings.add("LS437", self.at, file=self.file, reason=reason, known=known)
 
 
-def _shape(name: str) -> Shape:
-    """What needs more than a word comes as a normal error of its standard uncertainty."""
+def _shape(source: Source) -> tuple[Shape, Law | None]:
+    """The shape of an error, and its law; draws come as a normal error of their standard uncertainty."""
+    from msgspec import UNSET
+
     known = {shape.value: shape for shape in Shape}
-    shape = known.get(name, Shape.NORMAL)
-    return shape if shape is Shape.STUDENT or shape in PARTS else Shape.NORMAL
+    shape = known.get(source.distribution, Shape.NORMAL)
+    if shape is Shape.EXPONENTIAL:
+        return shape, Exponential()
+    if shape is Shape.TRUNCATED and source.ends is not UNSET:
+        low, high = source.ends
+        return shape, TruncatedNormal(-math.inf if low is None else low, math.inf if high is None else high)
+    return (shape if shape is Shape.STUDENT or shape in PARTS else Shape.NORMAL), None
 
 
 def _origin(found: Influences, source: Source) -> Origin:

@@ -24,7 +24,7 @@ from ..result.chi_square import RARE, freedom, head, tail, tied, ties
 from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
-from . import readings
+from . import readings, taken
 from .claims import CLAIM
 from .suspects import outliers, suspected
 
@@ -59,7 +59,7 @@ REACH = 2
 
 def _taken(inputs: Inputs) -> list[str]:
     """The columns that are taken from other reports, where either knows rows by words."""
-    return [name for name, taken in inputs.taken.items() if name in inputs.measured and taken.told]
+    return [name for name, own in inputs.taken.items() if name in inputs.measured and own.told]
 
 
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
@@ -78,6 +78,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
         TWICE: [table.name or table.row for table in inputs.tables],
         readings.SCATTERS: readings.names(sheet, inputs),
+        taken.TAKEN: list(inputs.taken),
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
         EXPECTED: [expectation.address for expectation in inputs.expected],
@@ -169,6 +170,7 @@ class _Oddities:
         yield from map(self.of_taken, _taken(self.inputs))
         yield from map(self.of_twice, self.inputs.tables)
         yield from readings.checks(self.report)
+        yield from taken.checks(self.inputs)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
         yield from self.of_left_out()
@@ -503,10 +505,10 @@ class _Oddities:
 
     def of_taken(self, column: str) -> Check:
         """Whether rows of another report are found by words: its order may have made their numbers."""
-        taken = self.inputs.taken[column]
-        hint = ": columns of the same words in both say which is which" * taken.doubtful
-        note = "warning" * taken.doubtful
-        return Check(WORDS, column, True, f"{column}: {taken.told}{hint}", self.inputs.place, note=note)
+        own = self.inputs.taken[column]
+        hint = ": columns of the same words in both say which is which" * own.doubtful
+        note = "warning" * own.doubtful
+        return Check(WORDS, column, True, f"{column}: {own.told}{hint}", self.inputs.place, note=note)
 
     def numbered(self, table: Measurements, rows: Sequence[int]) -> str:
         """``run 2``, ``runs 1 and 3``."""

@@ -37,6 +37,8 @@ LITTLE, MANY = 1e-3, 1e-2
 
 Their excess kurtosis is less than 1.5 times as much, and a probability is off by less than 0.55/24 of that.
 """
+LITTLE_OF = 1e-3
+"""What contributes at most such a share of u is a millionth of the variance: no degrees of freedom count."""
 ROUNDED = 1e-12
 """A limit so near to an end, as a share of it, is meant to be there."""
 
@@ -101,7 +103,7 @@ def of_sum(
     if u is None:
         u = math.sqrt(max(float(contributions @ together), 0.0))
     samples = [source.sample or n for n, source in enumerate(sources)]
-    moving = [(a, b) for a, b, _ in pairs if contributions[a] and contributions[b]]
+    moving = [pair for *pair, _ in pairs if np.abs(contributions[pair]).min() > LITTLE_OF * u]
     apart = (n for pair in moving if len({samples[n] for n in pair}) > 1 for n in pair)
     if any(np.isfinite(sources[n].dof) for n in apart):
         return u, math.nan

@@ -85,7 +85,7 @@ def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         more = f", {origin[0][:8]}" if names[origin[1], taken.file] > 1 else ""
         told, error = f"{origin[1]} ({taken.file}{more})", each.error
         yield ErrorSource(
-            told, error.shape, error.dof, tuple(moves[origin]), "taken", error.sample, origin=origin
+            told, error.shape, error.dof, tuple(moves[origin]), "taken", error.sample, error.law, origin
         )
 
 

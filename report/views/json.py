@@ -17,12 +17,13 @@ from ..document.written import text_of
 from ..files import values as form
 from ..files.form import SCHEMA, alike, text
 from ..files.manifest import Manifest
+from ..laws import TruncatedNormal
 from ..machine.staging import put
 from ..messages.diagnostics import Check
 from ..result import verdict_data
 from ..result.conformity import accepted
 from ..result.result import Comparison, Report
-from ..result.uncertain import Conformity, ErrorSource
+from ..result.uncertain import Budget, Conformity, ErrorSource
 from ..result.verdict import Verdict
 from ..sheet import Column, Formula, RepeatAxis
 from .issued import Issued
@@ -53,6 +54,7 @@ def values(report: Report) -> str:
             }
             or UNSET,
             oddities=oddities(report.oddities),
+            expanded=[_expanded(budget) for budget in report.uncertain().budgets if budget.is_known] or UNSET,
             conformity=[_decided(report, each) for each in report.uncertain().conformities] or UNSET,
             proofs=proof_statuses(report),
             rests_on=proof_grounds(report),
@@ -72,6 +74,13 @@ def oddities(checks: Iterable[Check]) -> list[form.Oddity]:
         for check in checks
         if check.word
     ]
+
+
+def _expanded(budget: Budget) -> form.Expanded:
+    expanded, factor, dof = (_short(each) for each in (budget.expanded, budget.factor, budget.dof))
+    return form.Expanded(
+        cell=budget.cell, U=expanded, k=factor, level=budget.level, dof=dof, doubt=budget.doubt
+    )
 
 
 def _decided(report: Report, found: Conformity) -> form.Conformity:
@@ -178,10 +187,15 @@ def _fifteen(u: float) -> float:
 def _error(source: ErrorSource) -> form.Source:
     """A source, by its name where it was stated."""
     report, name = source.origin or ("", source.name)
-    dof = None if math.isinf(source.dof) else source.dof
+    dof, law = None if math.isinf(source.dof) else source.dof, source.law
+    ends = (_finite(law.low), _finite(law.high)) if isinstance(law, TruncatedNormal) else UNSET
     return form.Source(
-        name=name, report=report, distribution=source.shape.value, dof=dof, sample=source.sample
+        name=name, report=report, distribution=source.shape.value, ends=ends, dof=dof, sample=source.sample
     )
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None
 
 
 def _short(u: float) -> float | None:

@@ -429,7 +429,7 @@ class _Written:
             return factor, f'"{budget.shape}"'
         named = self.by_shape(own, at, SHAPES, plain)
         if self.is_joint(budget):
-            named = f'IF({self.unmoved(at)},"{budget.shape}",{named})'
+            named = f'IF({self.unmoved(at)},"{budget.shape}",NA())'
         return factor, named
 
     def below(self, own: str, dof: str) -> str:

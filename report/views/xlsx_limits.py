@@ -22,6 +22,8 @@ _LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES, Shape.CONVOLVED)
 SHAPES = {shape.value: f'"{shape.value}"' for shape in (*_SHARES, *_LAWS)}
 """Their names in a formula."""
 CHANCE = "0.00%"
+ROUNDING = "0.000000001"
+"""Standard uncertainties by which rounding may leave a value beyond a limit that it is at, and much more."""
 
 
 def as_issued(cell: str, at: float, value: float) -> str:
@@ -135,9 +137,11 @@ def write_limits(
         to.row += 1
     no, yes, open_ = (f'"{each.value}"' for each in (Decision.DOES_NOT, Decision.CONFORMS, Decision.NONE))
     accepted = (
-        "AND(IF(ISNUMBER({low}),{value}>={from low},TRUE),IF(ISNUMBER({high}),{value}<={to high},TRUE))"
+        f"AND(IF(ISNUMBER({{low}}),({{value}}-{{from low}})/{{u}}>=-{ROUNDING},TRUE),"
+        f"IF(ISNUMBER({{high}}),({{to high}}-{{value}})/{{u}}>=-{ROUNDING},TRUE))"
     )
-    decided = f"IF(OR(N({{z low}})<0,N({{z high}})<0),{no},IF({accepted},{yes},{open_}))"
+    outside = f"OR(N({{z low}})<-{ROUNDING},N({{z high}})<-{ROUNDING})"
+    decided = f"IF({outside},{no},IF({accepted},{yes},{open_}))"
     to.line("decision", "decision", decided, found.decision.value)
     for name, when, taken, risk in (
         ("consumer", yes, "{below}+{above}", found.consumer_risk),

@@ -315,7 +315,9 @@ def test_a_budget_follows_an_edit_as_a_rebuild_does(office: Office, name: str) -
             told = ("statement", "standard uncertainty u", "expanded uncertainty U")
             assert {found[result][line, "B"] for line in told} == {"#UNDECIDED!"}
             continue
-        convolves = any(name == "k comes from" for name, _ in lines)
+        if convolves := any(name == "k comes from" for name, _ in lines):
+            factor = "coverage factor k", "B"
+            assert found[result][factor] >= stale[result][factor] * (1 - NEAR)
         second = lines["variance of second order", "B"] != 0
         for line, value in lines.items():
             if (convolves and line[0] in CONVOLVED) or (second and line[1] in "BI"):
@@ -340,6 +342,34 @@ def test_what_has_limits_is_decided_below_its_budget(office: Office) -> None:
     assert decided == {each.budget.cell: each.decision.value for each in every}
     assert len(decided) == 10
     assert set(decided.values()) == set(Decision)
+
+
+AT_LIMITS = """
+from loopsheet import Method, let, measured
+class AtLimits(Method, rows="points"):
+    "Deviations that are as large as they may be."
+    x = measured("mm", "reading")
+    nominal = measured("mm", "nominal")
+    dev = let(x - nominal, "deviation", "um")
+    rel = let((x - nominal) / nominal, "relative deviation", "%")
+"""
+
+
+def test_what_is_at_its_limit_conforms_there_too(require: Callable[..., str], tmp_path: Path) -> None:
+    """In doubles 9.95 - 10 is a little less than -0.05."""
+    files = {
+        "workbook.py": AT_LIMITS,
+        "m.csv": "point,x [mm],nominal [mm]\n1,10.05,10\n2,9.95,10\n3,20.10,20\n",
+        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
+        'x = "u = 0.01 mm"\nnominal = "exact"\n[limits]\ndev = "-50 .. 100 um"\nrel = "-0.5 .. 0.5 %"\n',
+    }
+    delivered = Office.made(tmp_path / "made", files)
+    every = delivered.report.uncertain().conformities
+    assert {each.decision for each in every} == {Decision.CONFORMS}
+    books = {"edited": delivered.edited({("x", 0): 10.05})}
+    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)["edited"]
+    found = budgets(read["uncertainty"])
+    assert {found[each.budget.cell]["decision", "B"] for each in every} == {Decision.CONFORMS.value}
 
 
 def stays(value: Any) -> Any:
