@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..derivations.unit_text import UnitError as NotAUnit
 from ..derivations.unit_text import of_differences, parse_unit
-from .inputs.inputs import Inputs, load
+from .inputs.inputs import Inputs
 from .machine.provenance import versions
 from .machine.timing import timed
 from .messages.errors import LoopsheetError, UsageError, diagnose, listing
 from .prepared import Prepared
-from .which_workbook import find_workbook, is_shipped
+from .which_workbook import is_shipped
 
 if TYPE_CHECKING:
     from ..derivations.equation import Ledger
@@ -283,18 +283,6 @@ def refereed_values(
     return found, referee.refereed(
         referee.compare(made.inputs.published, values, made.inputs.expected), found
     )
-
-
-def compared(report: Report) -> Report:
-    """The report with published.csv read again, after only what is known of differences has changed."""
-    from . import referee
-    from .referee.uncertain import compare_uncertainties
-
-    inputs = Prepared(load(report.inputs.folder, find_workbook), report.sheet).check_cells()
-    beside = referee.compare(inputs.published, report.values, inputs.expected)
-    comparisons = referee.refereed(beside, report.referee)
-    again = replace(report, inputs=inputs, comparisons=comparisons)
-    return replace(again, comparisons_u=compare_uncertainties(inputs, report.values))
 
 
 def shown(column: Column, sheet: Sheet, inputs: Inputs) -> Shown:

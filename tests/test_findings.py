@@ -148,6 +148,18 @@ def test_tables_without_known_differences_have_to_come_out(small: Report) -> Non
     assert [check.passed for check in refereed(unannounced)] == [True, False, False]
 
 
+@pytest.mark.parametrize(("verdict", "passed"), [(REACHABLE, True), (UNREACHABLE, False)])
+def test_beside_known_differences_all_others_have_to_come_out(
+    small: Report, verdict: str, passed: bool
+) -> None:
+    """A known misprint does not hide the next one."""
+    others = TableVerdict("others", 2, verdict, 0.5 if passed else 3.0)
+    together = refereed(small, others=others)[-1]
+    assert together.passed is passed
+    said = "the 2 published values that are not known to differ cannot come out"
+    assert (said in together.message) is not passed
+
+
 def test_known_misprints(small: Report) -> None:
     assert table_names(small.inputs) == ["Table 1", "Table 2", "all together"]
     known = replace(small.inputs, errata={("d", 0): small.inputs.measured["d"][0]})

@@ -334,6 +334,8 @@ def test_what_is_pinned_does_not_hide_the_next_error() -> None:
     assert [each[:3] for each in changes(of)[0]] == [("unit", "x", ())]
     assert (of.explanations[0].values, of.explanations[0].of) == (3, 4)
     assert of.pinned == ()
+    assert not of.others_come
+    assert found(SHEET, {"x": [pure("1.233"), pure("2.313")]}, cells).others_come
     known = [replace(cell, explained="misprint tenfold[2]") if cell.pin else cell for cell in cells]
     of = found(SHEET, {"x": x}, known)
     assert not words.holds("misprint tenfold[2]", of.explanations)

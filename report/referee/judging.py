@@ -17,6 +17,7 @@ from ..result.verdict import (
     INPUT,
     NOT_CHECKABLE,
     NOT_FOUND,
+    OTHERS,
     REACHABLE,
     UNREACHABLE,
     WITHIN,
@@ -92,10 +93,18 @@ def referee(
     joint, found = _together(ALL, whole, list(range(len(checkable))), certificate, alone, published, tables)
     if joint.mismatch is None:
         return Referee(alone, tuple(tables), joint, free=inputs.free)
+    which = [n for n, value in enumerate(checkable) if not value.expect]
+    others: TableVerdict | None = None
+    if joint.verdict not in (EXACT, REACHABLE) and 0 < len(which) < len(checkable):
+        judged = [
+            (verdict, value) for verdict, value in zip(alone, published, strict=True) if not value.expect
+        ]
+        others = _together(OTHERS, whole, which, certificate, *zip(*judged, strict=True))[0]
     if campaign.states:
         near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
         tables = [_allowed(campaign, table, checkable, near) for table in tables]
         joint = _allowed(campaign, joint, checkable, near)
+        others = others and _allowed(campaign, others, checkable, near)
     explained, pinned = tuple[Explained, ...](), tuple[Explained, ...]()
     tried: Tried | None = None
     asked = [value for value in published if not _is_gone(campaign, value)]
@@ -121,7 +130,7 @@ def referee(
     return Referee(
         alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
         inputs.free, _known(inputs), amended, misprints, tuple(each.explanation for each in slips),
-        tuple(each.explanation for each in pinned),
+        others, tuple(each.explanation for each in pinned),
     )  # fmt: skip
 
 
@@ -172,7 +181,10 @@ def _allowed(
     Each value by itself has to be as near as its own uncertainty says, and all of them have to come out of
     one input, each number of which is as near to its print as is stated of it.
     """
-    asked = [value for value in checkable if table.source in (ALL, value.source)]
+    asked = [
+        value for value in checkable
+        if table.source in (ALL, value.source) or (table.source == OTHERS and not value.expect)
+    ]  # fmt: skip
     if table.possible or not all(value in near for value in asked):
         return table
     problem = Problem.of(replace(campaign, stated=True), asked)

@@ -182,8 +182,10 @@ def of_referee(report: Report) -> tuple[Check, ...]:
         Check("table", t.source, found.as_printed or t.possible or t.source in known, words.together(t), at)
         for t in found.tables
     ]
-    said = "; ".join((words.all_together(found), *words.why(found)))
-    tables.append(Check("table", TOGETHER, bool(known) or found.as_printed, said, at))
+    others = () if found.others is None or found.others_come else (words.together(found.others),)
+    said = "; ".join((words.all_together(found), *others, *words.why(found)))
+    passed = found.others_come if known else found.as_printed
+    tables.append(Check("table", TOGETHER, passed, said, at))
     if found.amended is None:
         return tuple(tables)
     if found.joint.possible:

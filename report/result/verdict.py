@@ -42,6 +42,8 @@ UNAMENDED = "not by the known misprints"
 
 ALL = "all"
 """The source of all tables together."""
+OTHERS = "others"
+"""That of all values that are not known to differ."""
 INPUT = "input"
 """The source of what is given; every other is a table."""
 
@@ -243,6 +245,8 @@ class Referee:
     """What else would have to change then, if they do not come out."""
     slips: tuple[Explanation, ...] = ()
     """One slip each that would explain what the stated uncertainties explain as well."""
+    others: TableVerdict | None = None
+    """All values that are not known to differ; None if all are, or none is."""
     pinned: tuple[Explanation, ...] = ()
     """What explains the known differences where values that are none of them do not come out."""
 
@@ -257,6 +261,11 @@ class Referee:
         if self.joint is None:
             return False
         return self.joint.possible or (bool(self.explanations) and self.explanations[0].as_printed)
+
+    @property
+    def others_come(self) -> bool:
+        """Whether all that is not known to differ comes out: a known misprint does not hide the next one."""
+        return self.as_printed or self.others is None or self.others.possible
 
     @property
     def asked_why(self) -> bool:

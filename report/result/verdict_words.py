@@ -203,6 +203,9 @@ def _whose(table: verdict.TableVerdict) -> str:
     n = table.values
     if table.source == verdict.ALL:
         return f"all {n} published values together" if n > 1 else "the published value"
+    if table.source == verdict.OTHERS:
+        told = f"the {n} published values that are" if n > 1 else "the published value that is"
+        return f"{told} not known to differ"
     return f"the {n} values of {table.source}" if n > 1 else f"the value of {table.source}"
 
 
@@ -418,6 +421,8 @@ def lines(found: verdict.Referee, meaning: Callable[[str], str]) -> Iterator[str
         return
     for said in (*map(together, found.tables), all_together(found)):
         yield f"referee    {said}"
+    if found.others is not None and not found.others_come:
+        yield f"  {together(found.others)}"
     for said in why(found):
         yield f"  {said}"
     if every := (*(found.explanations if found.asked_why else ()), *found.slips, *found.pinned):

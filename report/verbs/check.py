@@ -57,7 +57,6 @@ def _accept(options: argparse.Namespace) -> int:
     from ..messages.errors import wrong
     from ..referee.accepting import accepted
     from ..result.findings import checks
-    from ..stages import compared
 
     reason, folder = " ".join(options.reason.split()), report_folder(options.folder)
     if not options.accept or folder == PAPER or not reason.isprintable():
@@ -70,7 +69,8 @@ def _accept(options: argparse.Namespace) -> int:
         found = accepted(report, reason)
         if found.after != found.before:
             replaced(found.path, found.before, found.after)
-            report = compared(report)
+            with studied(options.folder) as study:
+                report = study.refereed
         if options.format == "text":
             _show(found)
             _ask(report)
