@@ -163,8 +163,9 @@ def test_only_what_is_of_second_order_or_an_uncertainty_keeps_its_digits(
         assert len(column.get("kept", ())) == report.values.value[name].size * report.sheet[name].is_u, name
         assert len(column.get("bent", ())) == sum(each != 0 for each in second), name
     row = report.values.row(report.sheet["C"], (3, 4))
-    both = [report.uncertain().second["C"][row], report.values.value["C"][row]]
-    assert known["columns"]["C"]["bent"] == {"3-4": pytest.approx(both, rel=1e-5)}
+    second, u = report.uncertain().second["C"][row], report.uncertain().u["C"][row]
+    told = [second, report.values.value["C"][row], u**2 - second]
+    assert known["columns"]["C"]["bent"] == {"3-4": pytest.approx(told, rel=1e-5)}
     assert (known["shared"], known["correlated"], known["most"]) == ([], [], 2)
 
 

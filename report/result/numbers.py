@@ -110,11 +110,13 @@ def last_place(value: float, u: float, digits: int, most: int = MOST) -> int:
     (-4, -3, 0)
     >>> last_place(12.5, 0.0, 4), last_place(12.5, math.nan, 4), last_place(3e-14, 0.25, 4)
     (-1, -2, -2)
+    >>> last_place(7.96e35, 1.4e46, 4)
+    35
     """
     if 0 < u < math.inf:
-        value = value if abs(value) > _NOTHING * u else 0.0
-        size = order(max(abs(value), u))
-        return min(max(_told(u, most)[1], size - _DOUBLE + 1), order(value))  # a double has no more
+        first, size = order(value), order(max(abs(value), u))
+        least = first if abs(value) > _NOTHING * u else max(first, 0)
+        return min(max(_told(u, most)[1], size - _DOUBLE + 1), least)  # a double has no more
     place = order(value) - digits + 1
     if not u:
         place = max(place, min(0, int(_round(_kept(value), digits).normalize().as_tuple().exponent)))

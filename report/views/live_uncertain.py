@@ -100,8 +100,9 @@ def _of_left_out(report: Report, name: str) -> Iterator[tuple[str, Any]]:
 def digits(report: Report, column: Column) -> dict[str, Any]:
     """The digits of a computed column where no uncertainty tells, and those of cells that stay as issued.
 
-    Of a cell to which terms of second order count the variance that they make, and its value: an edit leaves
-    that as it is, or less where the cell is less.
+    Of a cell to which terms of second order count the variance that they make, that of first order and its
+    value: an edit leaves the first as it is, or less where first order is less, as its square; where there
+    is none of that, as the square of the cell.
     """
     warranted = report.shown[column.name].digits
     if isinstance(column.axis, RepeatAxis):
@@ -114,11 +115,11 @@ def digits(report: Report, column: Column) -> dict[str, Any]:
     }
     least = min(issued.values(), default=warranted) if every else warranted
     kept = {index: number for index, number in issued.items() if not every or number != least}
-    second = report.uncertain().second.get(name, ())
-    told = zip(labels, report.values.numbers(name), second, strict=False)
+    second, u = (known.get(name, ()) for known in (report.uncertain().second, report.uncertain().u))
+    told = zip(labels, report.values.numbers(name), second, u, strict=False)
     bent = {
-        index_text(label): [float(f"{one:.6g}") for one in (part, value)]
-        for label, value, part in told
+        index_text(label): [float(f"{one:.6g}") for one in (part, value, max(own**2 - part, 0.0))]
+        for label, value, part, own in told
         if part and value is not None
     }
     return {"digits": least} | ({"kept": kept} if kept else {"bent": bent} if bent and not every else {})

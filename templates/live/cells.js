@@ -20,12 +20,13 @@ class Look {
   }
 
   // The power of ten of the last digit of a computed cell: its uncertainty says it, in which terms of second order stay as
-  // issued, or are less as the value is. Where all of it stays, so does the number of digits.
+  // issued, or are less as those of first order are, or the value. Where all of it stays, so does the number of digits.
   place(name, row) {
     const { digits, scale, zero, kept, bent } = LIVE.columns[name], index = this.trace.index(name, row), x = this.trace.sheet.value[name][row], value = (x - zero) / scale;
-    const [second, issued] = bent?.[index] ?? [0];
     const own = kept?.[index] ?? (LIVE.shared ? 0 : digits);
-    return own ? order(value) - own + 1 : lastPlace(value, Math.sqrt(this.sure.u(name, row) ** 2 + second * Math.min(1, (x / issued) ** 2 || 0)) / scale, digits, LIVE.most);
+    if (own) return order(value) - own + 1;
+    const first = this.sure.u(name, row) ** 2, [second, issued, before] = bent?.[index] ?? [0], less = before ? first / before : x / issued;
+    return lastPlace(value, Math.sqrt(first + second * Math.min(1, less ** 2 || 0)) / scale, digits, LIVE.most);
   }
 
   column(name) {

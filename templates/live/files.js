@@ -1,6 +1,6 @@
 // The edited input as the files it came from: a build of them gives the numbers that the page shows.
 
-// Everything but plain words is quoted, so that a program that opens tables runs nothing.
+// Everything but plain words is quoted: a comma in it is none between fields.
 const csvField = (text) => (/^[\w.+\- [\]/()^*%°µμ²³⁻]*$/.test(text) ? text : `"${text.replaceAll('"', '""')}"`);
 
 // What stands in the column of tests that are left out.

@@ -121,7 +121,7 @@ function told(u, most = 2) {
 // certain, without idle zeros; else the last of so many digits.
 function lastPlace(value, u, digits, most) {
   if (u > 0 && u < Infinity) {
-    return Math.min(Math.max(told(u, most).place, order(Math.max(Math.abs(value), u)) - 14), Math.abs(value) > 1e-9 * u ? order(value) : 0);
+    return Math.min(Math.max(told(u, most).place, order(Math.max(Math.abs(value), u)) - 14), Math.max(order(value), Math.abs(value) > 1e-9 * u ? -Infinity : 0));
   }
   let place = order(value) - digits + 1;
   if (u === 0) {

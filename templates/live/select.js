@@ -70,7 +70,7 @@ function cellText(cell) {
 
 // What begins as a formula and is no number gets an apostrophe, which says to programs that it is a text.
 function asTable(rows) {
-  const texts = rows.map((cells) => cells.map((cell) => cellText(cell).replace(/^[=+@-](?![\d.]+(e-?\d+)?(\(\d+\))?$)/, "'$&")));
+  const texts = rows.map((cells) => cells.map((cell) => cellText(cell).replace(/^[=+@-](?![\d.]+(e[+-]?\d+)?(\(\d+\))?$)/i, "'$&")));
   const lines = texts.map((cells) => make("tr", {}, ...cells.map((text) => make("td", {}, text))));
   return { plain: texts.map((cells) => cells.join("\t")).join("\n"), html: asMarkup(make("table", {}, ...lines)) };
 }

@@ -3,6 +3,7 @@
 
 const CELLS = PROGRAM.columns.filter(({ name }) => LIVE.columns[name]);
 
+const LITTLE_OF = 1e-3; // of u: the degrees of freedom of what contributes no more do not count
 const ROUNDED = 2 ** -41, NEAR_SLOPE = 2 ** -22; // of a value; of one that moves
 
 // Every independent error of a state: what it is called, and what it moves, by one standard uncertainty.
@@ -107,7 +108,7 @@ class Sure {
   // Effective degrees of freedom (JCGM 100, G.2b): errors of one sample are one estimate. NaN if correlated ones have any.
   freedom(parts, variances, u) {
     const samples = this.errors.map(({ sample }, n) => sample ?? n), found = new Map();
-    const apart = this.pairs.filter(([a, b]) => parts[a] && parts[b] && samples[a] !== samples[b]);
+    const apart = this.pairs.filter(([a, b]) => Math.min(Math.abs(parts[a]), Math.abs(parts[b])) > LITTLE_OF * u && samples[a] !== samples[b]);
     if (apart.some(([a, b]) => this.errors[a].dof || this.errors[b].dof)) return NaN;
     variances.forEach((one, n) => found.set(samples[n], (found.get(samples[n]) ?? 0) + one));
     const below = sum(this.errors.map(({ dof }, n) => {

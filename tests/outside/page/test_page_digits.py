@@ -114,6 +114,27 @@ def test_page_shows_what_a_build_of_its_files_shows(
     assert live.state() == issued
 
 
+def test_a_pair_that_an_edit_makes_sure_is_told_so(open_page: Open, tmp_path: Path) -> None:
+    """As issued terms of second order make nearly all of its u; little of it is left, and of them."""
+    folder = copytree(PAPER, tmp_path / "near", ignore=lambda *_: ["published.csv", "out"])
+    rows = ("1,2.591,0.5148,26.93", "2,4.820,0.4668,49.47", "3,4.827,0.4666,49.49")
+    table = folder / "measurements.csv"
+    table.write_text("\n".join(("test,v [m/s],e [1],x_p [um]", *rows, "")), encoding="utf-8")
+    toml = '[parameters]\nball_mass = "8.366 g"\nbeta = "1.5"\n[measurements]\nfile = "measurements.csv"\n'
+    (folder / "report.toml").write_text('workbook = "soft_impact"\n' + toml, encoding="utf-8")
+    build(Study(folder), folder / "out", ("html",))
+    live = open_page(folder / "out" / "report.html")
+    live.type("v", 3, "5.203")
+    live.type("x_p", 3, "53.49")
+    table.write_text(
+        table.read_text(encoding="utf-8").replace("4.827,0.4666,49.49", "5.203,0.4666,53.49"),
+        encoding="utf-8",
+    )
+    built = Study(folder).computed
+    pair = next(cell for cell in live.cells() if (cell.name, cell.index) == ("alpha", "2-3"))
+    assert pair.text == built.text(built.values.cell("alpha", (2, 3)))
+
+
 def uncertain(live: Live) -> list[str]:
     """The table of the results with their uncertainties: values, u, k, U and where most of it comes from."""
     texts = "rows => rows.map((row) => Array.from(row.cells, (cell) => cell.textContent).join(' '))"
