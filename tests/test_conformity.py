@@ -4,6 +4,7 @@ import json
 import math
 import re
 from pathlib import Path
+from statistics import NormalDist
 
 import mpmath
 import numpy as np
@@ -22,6 +23,7 @@ from loopsheet.report.inputs.limits import Guard, Limits, of_every_row
 from loopsheet.report.inputs.number_text import read_printed
 from loopsheet.report.messages.errors import Location
 from loopsheet.report.result.uncertain import Budget, Conformity, Decision
+from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.conformity import beyond, conformity
 from loopsheet.report.which_workbook import find_workbook
 
@@ -36,7 +38,7 @@ def judged(
     dof, factor = (5.0, 3.0) if shape is Shape.STUDENT else (INF, 2.0)
     budget = Budget("y", "y", (), value, u, dof=dof, level=0.95, factor=factor, shape=shape)
     guard = Guard(read_printed(times, parse_unit("1")).value)
-    return conformity(budget, Limits("y", *ends, guard, Location()))
+    return conformity(budget, Limits("y", *ends, guard, Location()), budget)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +152,7 @@ def test_what_is_not_known(value: float, u: float, factor: float, decision: Deci
     high = read_printed("10", parse_unit("1"))
     because_of_it = "" if math.isnan(u) else "who knows"
     budget = Budget("y", "y", (), value, u, level=0.95, factor=factor, because=because_of_it)
-    found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()))
+    found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()), budget)
     assert (found.decision, found.because) == (decision, because)
     assert math.isnan(found.probability) == (u != 0)
 
@@ -227,6 +229,26 @@ def of_two(tmp_path: Path, first: str, second: str, limit: str) -> str:
     toml += f'[limits]\ny = "{limit}"\n[limits.rule]\nguard = "U"\n'
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
     return str(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("error", "inside"),
+    [
+        # A square is at most 1.6 where its root is at most 1.265, and not where a straight line is.
+        ("+-0.3 rect", (1.6**0.5 - 0.7) / 0.6),
+        ("u = 0.15", NormalDist(1.0, 0.15).cdf(1.6**0.5) - NormalDist(1.0, 0.15).cdf(-(1.6**0.5))),
+    ],
+)
+def test_what_bends_on_its_way_to_a_limit_is_drawn(tmp_path: Path, error: str, inside: float) -> None:
+    """Terms of second order make 1 % of the variance, and more of what lies farther out."""
+    code = "from loopsheet import Method, given, let\nclass Power(Method):\n    'A square.'\n"
+    code += '    V = given("1", "voltage")\n    P = let(V**2, "power")\n    L = let(2 * V, "twice")\n'
+    toml = f'workbook = "workbook.py"\n[parameters]\nV = "1.000, {error}"\n'
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    (tmp_path / "report.toml").write_text(toml + '[limits]\nP = "<= 1.6"\nL = "<= 2.5"\n', encoding="utf-8")
+    square, line = Study(tmp_path).computed.uncertain().conformities
+    assert square.probability == pytest.approx(inside, abs=5e-3)
+    assert (square.by.draws, square.budget.draws, line.by.draws) == (20_000, 0, 0)
 
 
 @pytest.mark.parametrize(

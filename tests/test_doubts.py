@@ -12,7 +12,7 @@ import pytest
 from loopsheet.report.cli import main
 from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
-from loopsheet.report.uncertainty.monte_carlo import by_draws
+from loopsheet.report.uncertainty.monte_carlo import Sample, by_draws
 
 METHOD = '''\
 """Homogeneity of a bath."""
@@ -62,7 +62,7 @@ def test_a_range_that_first_order_lets_be_negative(folder: Path) -> None:
     spread = of["spread"]
     assert spread.value - spread.expanded < 0  # no range is negative
     assert spread.advice == f"{FAILS}; use '{ASKED}'"
-    drawn = by_draws(report.inputs, report.values, spread)
+    drawn = by_draws(Sample(report.inputs, report.values, "spread"), 0, spread)
     assert drawn.because == "20000 draws: terms of second order were not looked at"
     assert drawn.law is not None
     (low,) = drawn.law.quantile(np.array([0.025]))

@@ -99,20 +99,22 @@ class Beside:
         """Whether it can compute the sheet of a program: no loops, and no equations of sums."""
         return not program.loops and not any(root.totals for root in program.roots.values())
 
-    def column(self, name: str, row: int, batch: Mapping[str, Array]) -> tuple[Array, Mask]:
-        """A row of a column for a batch, and of which of its elements it is known (batch,).
+    def column(self, name: str, row: int | slice, batch: Mapping[str, Array]) -> tuple[Array, Mask]:
+        """A row of a column, or some, for a batch, and of which of its elements it is known (batch,).
 
         `batch` (mapping of column name to float array (batch, rows)): given columns that are others than in
         the point; best in memory row by row.
         """
         (size,) = {len(each) for each in batch.values()}
-        found, known = np.empty(size), np.empty(size, dtype=bool)
+        found, known = [], []
         widest = max(map(self.laid.size, self.program.sheet.columns))
         for some in np.array_split(np.arange(size), math.ceil(size * widest / BLOCK)):
             block = slice(some[0], some[-1] + 1)
             rows = self._run({**self.point, **{name: each[block] for name, each in batch.items()}})
-            found[block], known[block] = rows.value[name][..., row], rows.known
-        return found, known
+            own = rows.value[name][..., row]
+            found.append(np.broadcast_to(own, (len(some), *own.shape[1:])))
+            known.append(np.broadcast_to(rows.known, len(some)))
+        return np.concatenate(found), np.concatenate(known)
 
     def _run(self, data: Mapping[str, Array]) -> _Rows:
         rows = _Rows(self, data)

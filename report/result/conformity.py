@@ -35,7 +35,7 @@ def lines(report: Report, found: Conformity) -> Iterator[str]:
     yield f"limits {found.limits}{_rule(report, found)}"
     yield sentence(found)
     if told := ", ".join(probabilities(found)):
-        yield told + (f", by {found.budget.because}" if found.budget.u else "")
+        yield told + (f", by {found.by.because}" if found.budget.u else "")
 
 
 def decision(report: Report, found: Conformity) -> str:
@@ -73,11 +73,11 @@ def _chance(found: Conformity, probability: float, other: float) -> str:
     """With as many digits as draws tell, where draws told it."""
     if math.isnan(probability):
         return ""
-    shapes = {found.budget.shape, *(each.source.shape for each in found.budget.contributions if each.u)}
-    if found.budget.u and (found.budget.draws or shapes & {Shape.NORMAL, Shape.STUDENT}):
+    shapes = {found.by.shape, *(each.source.shape for each in found.budget.contributions if each.u)}
+    if found.budget.u and (found.by.draws or shapes & {Shape.NORMAL, Shape.STUDENT}):
         # Without bounds nothing is certain, but to doubles.
         probability, other = max(probability, sys.float_info.min), max(other, sys.float_info.min)
-    return chance(probability, other, 1 if found.budget.draws else 2)
+    return chance(probability, other, 1 if found.by.draws else 2)
 
 
 def _rule(report: Report, found: Conformity) -> str:

@@ -277,6 +277,8 @@ class Conformity:
     probability: float
     """That it lies within them: the conformance probability (JCGM 106, 3.3.7)."""
     decision: Decision
+    by: Budget
+    """With the distribution of these probabilities: of draws, where the cell bends on its way to a limit."""
 
     @property
     def acceptance(self) -> tuple[float, float]:

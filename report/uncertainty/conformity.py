@@ -48,27 +48,31 @@ def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None = None) -> A
     return np.asarray(stdtr(dof, -z))
 
 
-def conformity(budget: Budget, limits: Limits) -> Conformity:
+def past(budget: Budget, distance: float, side: int) -> float:
+    """The probability that a quantity lies farther out than so far from its value, above it or, -1, below.
+
+    NaN where the budget assigns no distribution.
+    """
+    if math.isnan(distance) or (math.isnan(budget.factor) and budget.u != 0):
+        return math.nan
+    z = distance / budget.u if budget.u else math.copysign(math.inf, distance)
+    law = budget.law if side > 0 or budget.law is None else budget.law.turned()
+    return beyond(z, budget.shape, budget.dof, law)
+
+
+def conformity(budget: Budget, limits: Limits, by: Budget) -> Conformity:
     """A cell beside its limits.
 
-    `budget`: of the cell, with U at the level of the rule.
+    `budget`: of the cell, with U at the level of the rule. `by`: the same, with the distribution that tells
+    probabilities.
     """
     (low, high), value = limits.ends, budget.value
 
-    over, under = budget.law, budget.law and budget.law.turned()
-
-    def more(distance: float, law: Law | None) -> float:
-        """The probability that the error is larger; `over` the value or `under` it."""
-        if math.isnan(distance) or (math.isnan(budget.factor) and budget.u != 0):
-            return math.nan
-        z = distance / budget.u if budget.u else math.copysign(math.inf, distance)
-        return beyond(z, budget.shape, budget.dof, law)
-
-    below, above = more(value - low, under), more(high - value, over)
+    below, above = past(by, value - low, -1), past(by, high - value, 1)
     if below > 0.5:  # a difference of small ones, where that of 1 and nearly 1 would have lost its digits
-        probability = more(low - value, over) - above
+        probability = past(by, low - value, 1) - above
     elif above > 0.5:
-        probability = more(value - high, under) - below
+        probability = past(by, value - high, -1) - below
     else:
         probability = 1 - (below + above)
     rule = limits.guard
@@ -76,7 +80,7 @@ def conformity(budget: Budget, limits: Limits) -> Conformity:
     guard = share if rule.width is None else float(rule.width.value)
     guard = guard if math.isfinite(guard) else math.nan
     decision = _decided(value, (low, high), guard)
-    return Conformity(budget, limits, guard, below, above, probability, decision)
+    return Conformity(budget, limits, guard, below, above, probability, decision, by)
 
 
 def _decided(value: float, limits: tuple[float, float], guard: float) -> Decision:

@@ -118,25 +118,40 @@ def draw(
     return _distributed(np.concatenate(found), lost, budget, tolerance, told)
 
 
-def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
+class Sample:
+    """Draws of all rows of a column, of which some may be asked for.
+
+    `values`: all columns, without a batch.
+    """
+
+    def __init__(self, inputs: Inputs, values: Values, name: str) -> None:
+        drawn = _Draws(inputs, values, name, seed=1)
+        self.value, self.there = drawn.of(next(drawn.batches(SOME, SOME)), slice(None))
+
+    def row(self, row: int) -> Array:
+        """Those that have a value."""
+        found: Array = self.value[:, row][self.there[:, row]]
+        return found
+
+
+def by_draws(sample: Sample, row: int, budget: Budget, why: str = "") -> Budget:
     """A budget with the distribution of its cell as draws tell it, in place of that of its errors.
 
     Parameters
     ----------
-    values : Values
-        All columns, without a batch.
+    sample : Sample
+        Of its column, of which the cell is a row.
     budget : Budget
         With a standard uncertainty that is not 0, or of one that is not known: then that of the draws is.
+    why : str
+        It is asked for, if not for terms of second order.
 
     Returns
     -------
     Budget
         Without a coverage factor where too many draws have no value.
     """
-    drawn = _Draws(inputs, values, budget.name, seed=1)
-    row = values.row(values.sheet[budget.name], budget.label)
-    found = [own[there] for own, there in (drawn.of(batch, row) for batch in drawn.batches(SOME, SOME))]
-    errors = np.concatenate(found) - budget.value
+    errors = sample.row(row) - budget.value
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="too many draws have no value")
     if not budget.is_known:
@@ -144,8 +159,8 @@ def by_draws(inputs: Inputs, values: Values, budget: Budget) -> Budget:
     if not budget.u:
         return replace(budget, factor=0.0)
     errors = errors / budget.u
-    why = "terms of second order count" if budget.second else "terms of second order were not looked at"
-    told, law = f"{SOME} draws: {why}", Samples(errors)
+    unless = "terms of second order count" if budget.second else "terms of second order were not looked at"
+    told, law = f"{SOME} draws: {why or unless}", Samples(errors)
     factor = law.half(budget.level)
     return replace(budget, factor=factor, because=told, shape=Shape.SAMPLES, law=law, draws=SOME)
 
@@ -251,25 +266,26 @@ class _Draws:
         errors -= DIVISORS[shape]
         return errors
 
-    def of(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.bool_]]:
-        """The values of a row of the column, and whether they have one (size,)."""
+    def of(self, batch: dict[str, Array], row: int | slice) -> tuple[Array, NDArray[np.bool_]]:
+        """The values of one row of the column or of some, and whether they have one (size,) or (size, rows)."""
         if self.beside is None or not batch:
             return self._asked(batch, row)
         own, known = self.beside.column(self.name, row, batch)
-        there = np.ones(own.size, dtype=bool)
+        there = np.ones(own.shape, dtype=bool)
         if not known.all():
             left = {name: each[~known] for name, each in batch.items()}
             own[~known], there[~known] = self._asked(left, row)
         return own, there
 
-    def _asked(self, batch: dict[str, Array], row: int) -> tuple[Array, NDArray[np.bool_]]:
+    def _asked(self, batch: dict[str, Array], row: int | slice) -> tuple[Array, NDArray[np.bool_]]:
         """The same, asked of every draw whether it has a value by the rows of the estimate."""
         values = evaluate(self.sheet, self.labels, self.base | batch, self.program)
         size = max((len(own) for own in batch.values()), default=1)
         own, there = values.value[self.name][..., row], values.status[self.name][..., row] == Status.OK
         for others in other_rows(values, self.estimate).values():
-            there = there & ~others
-        return np.broadcast_to(own, size), np.broadcast_to(there, size)
+            there = there & ~(others[..., None] if isinstance(row, slice) else others)
+        shape = (size, *own.shape[-1:]) if isinstance(row, slice) else size
+        return np.broadcast_to(own, shape), np.broadcast_to(there, shape)
 
 
 def _begun(inputs: Inputs, values: Values, columns: Sequence[Column]) -> Sheet:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..cells.address import address
 from ..cells.layout import how_large, precedents
 from ..cells.values import Status, Values, rows_kept
-from ..distribution import LEVEL, Shape
+from ..distribution import DIVISORS, LEVEL, PARTS, Shape
 from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
@@ -36,11 +36,11 @@ from ..result.uncertain import (
 )
 from ..sheet import Column, CountedAxis, Given, PairAxis, RepeatAxis
 from ..workbook import Curve, SquareSum, Workbook
-from .conformity import conformity
+from .conformity import conformity, past
 from .coverage import assigned, coverage, of_sum, with_correlated
 from .misfit import least_squares_of_errors
-from .monte_carlo import by_draws
-from .second_order import COUNTS, SecondOrder, root_of
+from .monte_carlo import Sample, by_draws
+from .second_order import COUNTS, SecondOrder, beside, root_of
 from .sources import correlated, given, sources
 
 Array = NDArray[np.float64]
@@ -61,6 +61,8 @@ ROUNDINGS = 2.0**10
 """It is at most so many times that, times what share of an input its uncertainty is."""
 MOST_ROWS = 1000
 """Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
+MOVED = 1e-3
+"""A probability that bending changes by less is told by first order: draws leave as much open."""
 NOTHING = 1e-12
 """A contribution that is less than this share of the largest is left out of a budget."""
 
@@ -97,6 +99,7 @@ class Spread:
         sizes = [max(map(self._share, source.moves), default=0.0) for source in self.sources]
         self._shares = np.array(sizes or [0.0])
         self._known = _known(values)
+        self._sample: tuple[str, Sample] | None = None
         self._made: SheetDerivatives = like._made if like else SheetDerivatives.of(values.sheet)
         self._program: Program | None = like._program if like else None
         shared = like._chain if like and self._lies_as(like) else None
@@ -347,10 +350,40 @@ class Spread:
     def conformity(self, limits: Limits) -> Conformity:
         """A cell beside its limits."""
         name, label = limits.cell
-        budget = self.budget(name, self.values.row(self.values.sheet[name], label), limits.guard.level)
+        row = self.values.row(self.values.sheet[name], label)
+        budget = self.budget(name, row, limits.guard.level)
         if (budget.u > 0 or not budget.is_known) and (budget.second or budget.unlooked):
-            budget = by_draws(self.inputs, self.values, budget)
-        return conformity(budget, limits)
+            budget = by_draws(self._drawn(name), row, budget)
+        elif budget.u > 0 and self._bends(budget, row, limits):
+            why = "it bends between its value and a limit"
+            return conformity(budget, limits, by_draws(self._drawn(name), row, budget, why))
+        return conformity(budget, limits, budget)
+
+    def _drawn(self, name: str) -> Sample:
+        """Draws of a column, kept until others are asked for: limits of its rows follow one another."""
+        if self._sample is None or self._sample[0] != name:
+            self._sample = name, Sample(self.inputs, self.values, name)
+        return self._sample[1]
+
+    def _bends(self, budget: Budget, row: int, limits: Limits) -> bool:
+        """Whether a cell bends so much on its way to a limit that it is beyond it more or less often.
+
+        That way is the one on which errors reach the limit most probably, to first order.
+        """
+        assert self._program is not None
+        own = self.contributions([(budget.name, row)])[0]
+        sides = [(side, end) for side, end in zip((-1, 1), limits.ends, strict=True) if math.isfinite(end)]
+        along = np.outer(with_correlated(own, self._pairs), [end - budget.value for _, end in sides])
+        most = np.array([[DIVISORS[s.shape] if s.shape in PARTS else math.inf] for s in self.sources])
+        errors = np.clip(along / budget.u**2, -most, most)
+        there = beside(self.values, self._program, self.sources, errors)
+        off = there.value[budget.name][..., row] - budget.value - own @ errors
+        for n, (side, end) in enumerate(sides):
+            distances = (side * (end - budget.value - bent) for bent in (0.0, float(off[n])))
+            straight, bent = (past(budget, distance, side) for distance in distances)
+            if not abs(bent - straight) <= MOVED:
+                return True
+        return False
 
     def influence(self, cells: Sequence[tuple[str, int]], columns: Sequence[str] = ()) -> Influence:
         """What every source does to some cells; those without a value are left out.

@@ -109,15 +109,15 @@ class SecondOrder:
         number, some = len(sources), np.random.default_rng(1).standard_normal((len(sources), 1))
         sides = np.hstack([np.eye(number), -np.eye(number)])
         steps = np.hstack([sides, FAR / STEP * sides, some @ np.array([[1.0, 2.0, 4.0]])])
-        every = _beside(values, program, sources, root @ steps)
+        every = beside(values, program, sources, STEP * (root @ steps))
         ends = pairwise((0, 2 * number, 4 * number, 4 * number + 3))
-        beside, far, together = (every.of_batch(slice(*each)) for each in ends)
-        self._along = NumericSweep(chain, beside).go()
+        near, far, together = (every.of_batch(slice(*each)) for each in ends)
+        self._along = NumericSweep(chain, near).go()
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
             self._through = self._along.whole @ self.weights
         """The derivatives of computed scalars by the errors (steps, scalars, errors)."""
         self._uses = (self._through != 0).any(axis=0)
-        moved = other_rows(beside, values)
+        moved = other_rows(near, values)
         self.torn = {
             column.name
             for column in values.sheet.columns
@@ -128,7 +128,7 @@ class SecondOrder:
         """What has cells of which the terms of second order take away more than half of the first."""
         self.bending = set[str]()
         """What has cells that first order tells near their values, and not as far away as U reaches."""
-        self._value, self._near, self._far = values.value, beside.value, far.value
+        self._value, self._near, self._far = values.value, near.value, far.value
         self.creeping = {name: _creeps(found, values.value[name]) for name, found in together.value.items()}
         """How far cells change along all errors at once as a power of them that is higher than the first."""
 
@@ -266,13 +266,13 @@ class SecondOrder:
         terms = np.zeros_like(through)
         terms[:, still] = np.abs(by_scalars[:, still]) @ np.abs(self._through[:, named])
 
-        def beside(step: NDArray[np.intp]) -> Array:
+        def stepped(step: NDArray[np.intp]) -> Array:
             step = step[:, :, None]
             own = along.entries[step, entries[:, None, :]] @ weights
             place = step, cell, used[:, None, :]
             return without_rounding(own + through[place], terms[place])
 
-        up, down = beside(used), beside(half + used)
+        up, down = stepped(used), stepped(half + used)
         for n, odd in along.without_value(cells):
             dead = np.broadcast_to(odd, 2 * half)
             up[n, dead[used[n]]] = down[n, dead[half + used[n]]] = np.nan
@@ -316,15 +316,15 @@ def _creeps(found: Array, value: Array) -> Array:
     return np.where(faster, one, 0.0)
 
 
-def _beside(values: Values, program: Program, sources: Sequence[ErrorSource], steps: Array) -> Values:
-    """The sheet where each error is so many steps away (sources, sheets); of each sheet (sheets, rows)."""
+def beside(values: Values, program: Program, sources: Sequence[ErrorSource], errors: Array) -> Values:
+    """The sheets with such errors, in standard uncertainties (sources, sheets): of each (sheets, rows)."""
     sheet = values.sheet
     moved = {
-        name: np.tile(values.value[name], (steps.shape[1], 1))
+        name: np.tile(values.value[name], (errors.shape[1], 1))
         for name in dict.fromkeys(name for source in sources for name, _, _ in source.moves)
     }
-    for source, along in zip(sources, steps, strict=True):
+    for source, own in zip(sources, errors, strict=True):
         for name, row, u in source.moves:
-            moved[name][:, row] += STEP * u * along
+            moved[name][:, row] += u * own
     given = {name: values.value[name] for name in sheet.bounds if name in values.value}
     return evaluate(sheet, values.given_labels, given | moved, program)

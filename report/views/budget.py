@@ -308,7 +308,7 @@ def _conformity(found: uncertain.Conformity) -> dict[str, object]:
         "acceptance": list(map(number, found.acceptance)),
         "decision": found.decision.value,
         "because": found.because,
-        "distribution": found.budget.shape.value,
+        "distribution": found.by.shape.value,
         "probability": number(found.probability),
         "below": number(found.below),
         "above": number(found.above),

@@ -412,7 +412,7 @@ class _Written:
         for found in self.report.uncertain().conformities:
             if found.budget.cell == self.budget.cell:
                 form = self.form(found.guard or self.budget.u)
-                formulas = self.assigned(found.budget, own, at)
+                formulas = self.assigned(found.budget, own, at)[0], self.assigned(found.by, own, at)[1]
                 row = write_limits(
                     self.sheet, self.style, found, self.block.place, form, row, dict(at), formulas
                 )

@@ -92,7 +92,7 @@ def write_limits(
     formulas : (callable, str)
         The coverage factor for the cell of a probability; the name of the distribution that is assigned.
     """
-    budget, rule, (low, high) = found.budget, found.limits.guard, found.limits.ends
+    budget, by, rule, (low, high) = found.budget, found.by, found.limits.guard, found.limits.ends
     style.text(sheet, row, 0, "decision rule (JCGM 106)", "head")
     to = _Written(sheet, style, row + 1, dict(at))
     to.end("low", "lower tolerance limit", "", place.of(low), "General")
@@ -110,28 +110,27 @@ def write_limits(
     least, most = found.acceptance
     to.end("from low", "lower acceptance limit", "{low}+{guard}", place.of(least), form)
     to.end("to high", "upper acceptance limit", "{high}-{guard}", place.of(most), form)
-    to.line("shape", "distribution", formulas[1], budget.shape.value)
+    to.line("shape", "distribution", formulas[1], by.shape.value)
     z = (budget.value - low) / budget.u, (high - budget.value) / budget.u
     to.end("z low", "lower margin over u", "({value}-{low})/{u}", z[0], "0.00")
     to.end("z high", "upper margin over u", "({high}-{value})/{u}", z[1], "0.00")
     for name, said, now in (("low", "below", found.below), ("high", "above", found.above)):
         end = f"{{z {name}}}"
         tail = to.tail(end)
-        if budget.law is not None:  # of sources that were edited it is another one
-            other = tail if budget.shape is Shape.CONVOLVED else "NA()"
+        if by.law is not None:  # of sources that were edited it is another one
             known = as_issued(end, z[name == "high"], now)
-            tail = f'IF({{shape}}="{budget.shape}",{known},{other})'
+            tail = f'IF({{shape}}="{by.shape}",{known},NA())'
         to.line(said, f"probability that it lies {said}", f"IF(ISTEXT({end}),0,{tail})", now, CHANCE)
     inside = (
         "1-({below}+{above})"
-        if budget.law
+        if by.law
         else (
             f"IF({{below}}>0.5,{to.tail('-N({z low})')}-{{above}},"
             f"IF({{above}}>0.5,{to.tail('-N({z high})')}-{{below}},1-({{below}}+{{above}})))"
         )
     )
     to.line("inside", "conformance probability", inside, found.probability, CHANCE)
-    if budget.law:
+    if by.law:
         said = "the probabilities do not follow an edit: #N/A where value or limits are not as issued"
         style.text(sheet, to.row, 0, said)
         to.row += 1
