@@ -577,8 +577,8 @@ class _Reader:
         columns = {column: table for table in measurements for column in table.measured}
         tests = list(map(str, columns[name].tests)) if name in columns else []
         if name not in columns:
-            known, suggestion = listing(columns), suggest(name, columns)
-            self.findings.add("LS505", at, text=name, known=known, suggestion=suggestion)
+            hint = suggest(name, columns) or "of a published value say 'differs' in its column 'expect'"
+            self.findings.add("LS505", at, text=name, known=listing(columns), suggestion=hint)
         elif index in [str(each.test) for each in columns[name].left_out]:
             pass  # it is misprinted in a row that nothing is computed from
         elif index not in tests:

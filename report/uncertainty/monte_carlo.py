@@ -267,7 +267,7 @@ class _Draws:
         return errors
 
     def of(self, batch: dict[str, Array], row: int | slice) -> tuple[Array, NDArray[np.bool_]]:
-        """The values of one row of the column or of some, and whether they have one (size,) or (size, rows)."""
+        """One row of the column, or some, and whether they have a value (size,) or (size, rows)."""
         if self.beside is None or not batch:
             return self._asked(batch, row)
         own, known = self.beside.column(self.name, row, batch)
