@@ -39,16 +39,7 @@ class Status(IntEnum):
         return CODES[self]
 
 
-CODES = {
-    Status.OK: "ok",
-    Status.INPUT: "#INPUT!",
-    Status.DOMAIN: "#DOMAIN!",
-    Status.NOROOT: "#NOROOT!",
-    Status.TWOROOTS: "#TWOROOTS!",
-    Status.OVERFLOW: "#OVERFLOW!",
-    Status.UNDECIDED: "#UNDECIDED!",
-}
-
+CODES = {each: f"#{each.name}!" if each else "ok" for each in Status}
 
 BEYOND = "it, or a step towards it, is above 1.8e308, or positive and below 2.2e-308"
 """What ``#OVERFLOW!`` means, for the reader."""
