@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -230,10 +230,7 @@ class Values:
             if label:
                 raise KeyError(label)
             return 0
-        known = self._rows_by_label
-        if column.axis.name not in known:
-            known[column.axis.name] = {own: row for row, own in enumerate(self._labels(column.axis.name))}
-        return known[column.axis.name][label]
+        return self._rows_by_label(column.axis.name)[label]
 
     def tests(self, cell: Cell) -> tuple[tuple[str, int], ...]:
         """The tests that a row rests on: the index set and the number of each; none of a scalar."""
@@ -263,7 +260,7 @@ class Values:
 
     def rows_of_group(self, name: str, axis: MemberAxis, row: int) -> int:
         """Over how many rows of its group a cell sums: those without a value do not count."""
-        where, (_, kept) = self.layouts[axis.name].groups[row], self._named(self.sheet[name])
+        where, (_, kept) = self.layouts[axis.name].groups[row], self._named(name)
         return int(kept[axis.name][where].sum()) if axis.name in kept else where.stop - where.start
 
     def left_out(self, name: str, row: int) -> Iterator[tuple[int, int, str]]:
@@ -305,29 +302,24 @@ class Values:
         return tuple(cell for cell in failed if cell.culprit is None)
 
     @cached_property
-    def _labels_by_axis(self) -> dict[str, list[tuple[int, ...]]]:
-        return {}
+    def _labels(self) -> Callable[[str], list[tuple[int, ...]]]:
+        layouts = self.layouts
+        return cache(lambda axis: [tuple(label) for label in layouts[axis].labels.tolist()])
 
     @cached_property
-    def _rows_by_label(self) -> dict[str, dict[tuple[int, ...], int]]:
-        return {}
+    def _rows_by_label(self) -> Callable[[str], dict[tuple[int, ...], int]]:
+        labels = self._labels
+        return cache(lambda axis: {label: row for row, label in enumerate(labels(axis))})
 
     @cached_property
-    def _precedents(self) -> dict[str, tuple[tuple[Precedent, ...], dict[str, Mask]]]:
-        return {}
+    def _named(self) -> Callable[[str], tuple[tuple[Precedent, ...], dict[str, Mask]]]:
+        sheet, layouts, status = self.sheet, self.layouts, self.status
 
-    def _labels(self, axis: str) -> list[tuple[int, ...]]:
-        known = self._labels_by_axis
-        if axis not in known:
-            known[axis] = [tuple(label) for label in self.layouts[axis].labels.tolist()]
-        return known[axis]
+        def of(name: str) -> tuple[tuple[Precedent, ...], dict[str, Mask]]:
+            named = precedents(sheet, layouts, sheet[name])
+            return named, rows_kept(named, layouts, status)
 
-    def _named(self, column: Column) -> tuple[tuple[Precedent, ...], dict[str, Mask]]:
-        known = self._precedents
-        if column.name not in known:
-            named = precedents(self.sheet, self.layouts, column)
-            known[column.name] = named, rows_kept(named, self.layouts, self.status)
-        return known[column.name]
+        return cache(of)
 
     # --- why a cell has no value -----------------------------------------------------------------------
 
@@ -379,7 +371,7 @@ class Values:
 
         A loop that did not settle is where it began.
         """
-        named, kept = self._named(column)
+        named, kept = self._named(column.name)
         loop, status = self._loop(column), self.status[column.name][row]
         failed = isinstance(column.rule, Iterated) and status == Status.NOROOT
         for precedent in sorted(named, key=lambda each: each.column.name in loop):
@@ -418,7 +410,7 @@ class Values:
         broken = self.broken.get(column.name)
         if broken is not None and broken[row]:
             return f"{outside}: {column.conditions[broken[row] - 1]}"
-        empty = [axis for axis, mask in self._named(column)[1].items() if not mask.size]
+        empty = [axis for axis, mask in self._named(column.name)[1].items() if not mask.size]
         if empty:
             return f"{outside}: {empty[0]} has no rows"
         if isinstance(rule, Formula):
