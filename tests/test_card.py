@@ -12,6 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from helpers import number_for
 from sympy import Float, Symbol
 
 from loopsheet.derivations.contact.power_law import POWER_LAW
@@ -21,7 +22,6 @@ from loopsheet.report.impacts.card import Unreachable, card
 from loopsheet.report.impacts.code import ContactFormula, SimulationCode, Typed
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.impacts.contact import law_of
-from loopsheet.report.impacts.damping import number_for
 from loopsheet.report.impacts.drops import Drops
 from loopsheet.report.impacts.law import ForceLaw, rate, v_0, x
 from loopsheet.report.impacts.simulation import STAY, Impact, simulate

@@ -9,6 +9,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from helpers import number_for
 from sympy import Expr, Piecewise, Rational, log
 
 from loopsheet.derivations.contact import damping as model
@@ -33,7 +34,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.impacts.code import R
 from loopsheet.report.impacts.codes import CODES, stiffness
 from loopsheet.report.impacts.codes import k as K_EXUDYN
-from loopsheet.report.impacts.damping import _value, _zero, number_by, number_for, returned
+from loopsheet.report.impacts.damping import _value, _zero, number_by, returned
 from loopsheet.report.impacts.law import ForceLaw, rate, x
 from loopsheet.report.impacts.simulation import simulate
 

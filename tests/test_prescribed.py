@@ -7,12 +7,13 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from helpers import number_for
 
 from loopsheet.derivations.contact import damping
 from loopsheet.derivations.contact.prescribed import AUTHORS, Author
 from loopsheet.report.cells.values import Values
 from loopsheet.report.document.writing import placed_in
-from loopsheet.report.impacts.damping import number_by, number_for
+from loopsheet.report.impacts.damping import number_by
 from loopsheet.report.impacts.law import ForceLaw
 from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.study import Study

@@ -58,26 +58,6 @@ def returned(c: float) -> float:
     return _zero(lambda e: _value(residual, c=c, e_o=e), 0.0, min(1.0, 1 / c) * (1 - _MARGIN))
 
 
-def number_for(e: float) -> float:
-    """The damping number with which the family returns a restitution, for any n: (L106), solved for it.
-
-    Parameters
-    ----------
-    e : float
-        The restitution, between 0 and 1.
-
-    Examples
-    --------
-    >>> f"{number_for(0.5):.4f}"
-    '1.4328'
-    """
-    if e < 1 / _STRONG:
-        return 1 / e
-    (residual,) = model.returned.residuals
-    # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
-    return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - _MARGIN) / e)
-
-
 def number_by(author: str, e: float, n: float) -> float:
     """The damping number by an author's formula, one of :data:`~...damping.MEMBERS`.
 
