@@ -18,7 +18,7 @@ from sympy.logic.boolalg import BooleanFunction
 from sympy.printing.printer import Printer
 
 from ...derivations.rebuilt import renamed
-from ..plan.nodes import Leaf, Node, Plan, RowOrder, RowSum
+from ..plan.nodes import Leaf, Node, OverRows, Plan
 from ..plan.order import Word
 from .excel_values import NotPrintable
 
@@ -230,12 +230,10 @@ class ExcelPrinter(Printer):
     def _print_IsNumber(self, expr: Basic) -> str:
         return f"ISNUMBER({self._print(expr.args[0])})"
 
-    def _print_RowSum(self, expr: RowSum | RowOrder) -> str:
+    def _print_OverRows(self, expr: OverRows) -> str:
         if self.total is None:
             return self.emptyPrinter(expr)
         return self.total(expr.args[0], expr.args[1].name, expr.word)
-
-    _print_RowOrder = _print_RowSum
 
     # --- choices
 

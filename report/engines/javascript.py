@@ -18,7 +18,7 @@ from sympy.core.symbol import Str
 from sympy.printing.jscode import JavascriptCodePrinter
 
 from ..plan.lowering import lowered
-from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, Plan, RootNode, RowOrder, RowSum, Total
+from ..plan.nodes import GivenNode, Leaf, LoopNode, Map, OverRows, Plan, RootNode, RowOrder, RowSum, Total
 from ..plan.nodes import Node as PlanNode
 from ..sheet import Axis, Column, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis, Sheet
 from .certified import certified, slope, typed_form
@@ -127,7 +127,7 @@ class _Scope:
 
         Those that are not known are new ones, in `moving`.
         """
-        if isinstance(expression, (RowSum, RowOrder)):
+        if isinstance(expression, OverRows):
             own = expression.xreplace({s: self.own(s) for s in expression.free_symbols})
             if own in self.totals or isinstance(expression, RowOrder):
                 return self.taken(own, row)

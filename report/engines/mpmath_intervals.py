@@ -10,7 +10,7 @@ from sympy import And, Basic, Gt, Lt, Ne, Symbol, cos, exp, lambdify, log, sin, 
 from sympy.core.function import Application
 
 from ...derivations.reductions import REDUCTIONS
-from ..plan.nodes import RowOrder, RowSum
+from ..plan.nodes import OverRows
 from .interval_functions import Run, running
 
 
@@ -34,7 +34,7 @@ def source_of(
 
 def text_of(symbols: Sequence[Symbol], bodies: Sequence[Basic]) -> str | None:
     """A function of intervals that encloses expressions; None if mpmath knows no intervals of a part."""
-    if any(body.has(*REDUCTIONS, RowSum, RowOrder) for body in bodies) or not all(
+    if any(body.has(*REDUCTIONS, OverRows) for body in bodies) or not all(
         isinstance(each, (exp, log, sin, cos)) for body in bodies for each in body.atoms(Application)
     ):
         return None

@@ -19,7 +19,7 @@ from sympy.logic.boolalg import Boolean
 from ...derivations.reductions import REDUCTIONS
 from ..quantity import Bounds
 from ..sheet import Sheet
-from .nodes import Leaf, RowOrder, RowSum
+from .nodes import Leaf, OverRows, RowSum
 
 _EVERYWHERE = (
     sp.Abs, sp.Add, sp.And, ExprCondPair, sp.Max, sp.Min, sp.Mul, sp.Not, sp.Or, Relational,
@@ -90,7 +90,7 @@ def defined(expression: Any) -> Boolean:
     if isinstance(expression, REDUCTIONS):
         outside = sp.Piecewise((sp.Integer(0), defined(expression.function)), (sp.Integer(1), True))
         return sp.S.true if outside == 0 else sp.Eq(sp.Sum(outside, *expression.limits), 0)
-    if isinstance(expression, (RowSum, RowOrder)):
+    if isinstance(expression, OverRows):
         outside = sp.Piecewise((sp.Integer(0), defined(expression.args[0])), (sp.Integer(1), True))
         return sp.S.true if outside == 0 else sp.Eq(RowSum(outside, expression.args[1]), 0)
     if isinstance(expression, sp.Piecewise):

@@ -14,7 +14,7 @@ from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
 from .domain import defined, is_positive, positive, typed_symbols
-from .nodes import GivenNode, Leaf, LoopNode, Map, Node, Plan, RootNode, RowOrder, RowSum, Total
+from .nodes import GivenNode, Leaf, LoopNode, Map, Node, OverRows, Plan, RootNode, RowOrder, RowSum, Total
 from .special import SPECIAL, in_elementary_terms
 
 _REAL = Symbol("_", real=True)
@@ -209,10 +209,10 @@ class Lowering:
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
         """The expression with symbols for what it takes over rows, which become nodes; not for what moves."""
-        if not expression.has(RowSum, RowOrder):
+        if not expression.has(OverRows):
             return expression
         parts = [self._lifted(argument, column, unknown, nodes) for argument in expression.args]
-        if not isinstance(expression, (RowSum, RowOrder)):
+        if not isinstance(expression, OverRows):
             return rebuilt(expression, parts)
         terms, axis, *_ = parts
         if unknown is not None and terms.has(unknown):

@@ -43,11 +43,25 @@ class Leaf:
 # --- what is taken over rows ------------------------------------------------------------------------------
 
 
-class RowSum(Expr):
-    """A sum over an axis' rows as a function of the array of its terms: linear, which is all algebra needs.
+class OverRows(Expr):
+    """What is taken over an axis' rows, as a function of the array of its terms.
 
     `terms`: in plain symbols, each of which stands for an array. `axis`: the axis' name.
     """
+
+    is_commutative = True
+    is_real = True
+
+    def _eval_is_positive(self) -> bool | None:
+        return True if self.args[0].is_positive else None  # there are rows, or it has no value
+
+    def _sympystr(self, printer: Any) -> str:
+        terms, axis = map(printer._print, self.args[:2])
+        return f"{self.word}({terms}, {axis})"
+
+
+class RowSum(OverRows):
+    """A sum: linear, which is all algebra needs."""
 
     def __new__(cls, terms: Expr, axis: Symbol) -> Expr:
         """Take numbers out, so that twice a sum is not another sum."""
@@ -57,42 +71,20 @@ class RowSum(Expr):
         total = super().__new__(cls, rest, axis)
         return total if number == 1 else number * total
 
-    is_commutative = True
-    is_real = True
     word: ClassVar[Word] = "sum"
-
-    def _eval_is_positive(self) -> bool | None:
-        return True if self.args[0].is_positive else None  # there are rows, or it has no value
-
-    def _sympystr(self, printer: Any) -> str:
-        terms, axis = map(printer._print, self.args)
-        return f"sum({terms}, {axis})"
 
     def _eval_derivative(self, symbol: Symbol) -> Expr:
         terms, axis = self.args
         return RowSum(differentiated(terms, symbol), axis)
 
 
-class RowOrder(Expr):
-    """What is taken by order of an axis' rows, as a function of the array of its terms.
-
-    `terms` and `axis`: as for :class:`RowSum`. `word`: ``median``, ``max`` or ``min``.
-    """
-
-    is_commutative = True
-    is_real = True
+class RowOrder(OverRows):
+    """What is taken by order, with its word besides: ``median``, ``max`` or ``min``."""
 
     @property
     def word(self) -> Word:
         """What is taken."""
         return self.args[2].name  # type: ignore[no-any-return]
-
-    def _eval_is_positive(self) -> bool | None:
-        return True if self.args[0].is_positive else None
-
-    def _sympystr(self, printer: Any) -> str:
-        terms, axis = map(printer._print, self.args[:2])
-        return f"{self.word}({terms}, {axis})"
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
@@ -105,7 +97,7 @@ def free_name(wanted: str, taken: set[str]) -> str:
 
 def taken_over(expressions: Iterable[Basic]) -> tuple[str, ...]:
     """The axes over which expressions take something, by name."""
-    found = (taken for expression in expressions for taken in expression.atoms(RowSum, RowOrder))
+    found = (taken for expression in expressions for taken in expression.atoms(OverRows))
     return tuple(sorted({taken.args[1].name for taken in found}))
 
 
