@@ -396,7 +396,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS612": lambda: crate("2026-03-31", "all mine"),
     "LS613": replaced_read_only,
     "LS614": lambda: check.run(Namespace(accept=False, reason="a slip", folder="paper")) and None,
-    "LS615": lambda: report_folder() and None,
+    "LS615": lambda: report_folder(None) and None,
     "LS616": the_word_for_a_folder,
     "LS617": lambda: _parse(["build", "a", "b"]) and None,
     "LS618": raises(UsageError, "LS618", text="gum_h1"),
@@ -527,10 +527,10 @@ def test_colour_adds_only_escape_sequences() -> None:
 
 
 def test_many_findings_are_counted_and_cut() -> None:
-    findings = [Diagnostic("LS401", f"m{n}") for n in range(5)]
+    findings = [Diagnostic("LS401", f"m{n}") for n in range(42)]
     assert render_all(findings[:1]).endswith("\n\n1 error")
-    assert render_all(findings).endswith("m4\n\n5 errors")
-    assert render_all(findings, limit=2).endswith("m1\n\n5 errors (3 of them not shown)")
+    assert render_all(findings[:5]).endswith("m4\n\n5 errors")
+    assert render_all(findings).endswith("m39\n\n42 errors (2 of them not shown)")
 
 
 def test_findings_are_sorted_by_file_line_and_column() -> None:

@@ -38,7 +38,7 @@ from loopsheet.report.views.typeset import TEXT_WIDTH, block, width
 
 a, b, c, x, y = symbols("a b c x y", positive=True)
 eps = Symbol("eps")
-NAMES = latex_names(VOCABULARY)
+NAMES = latex_names(VOCABULARY, ())
 PRINTER = MathPrinter(NAMES)
 V, XM, CP, E = (VOCABULARY[name] for name in ("v", "x_m", "Cprime", "e"))
 n = Symbol("n_points")
@@ -164,7 +164,7 @@ def test_names(name: str, index: str, latex: str) -> None:
 
 def test_a_name_is_a_letter_where_the_library_has_one() -> None:
     for name in sorted({*greek_letters_set, *tex_greek_dictionary, *other_symbols, "word", "abar"}):
-        own, theirs = name_latex(name), translate(name)
+        own, theirs = name_latex(name, {}), translate(name)
         if name not in {"lamda", "Lamda", "khi"}:  # which nobody writes, and LaTeX has not
             assert own == (theirs if theirs == f"\\{name}" else rf"\mathrm{{{name}}}"), name
 

@@ -11,7 +11,7 @@ Terms = list[tuple[bool, str]]
 """LaTeX of the terms of a sum, each with whether it is subtracted."""
 
 
-def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[str, str]:
+def latex_names(vocabulary: Vocabulary, columns: Iterable[Column]) -> dict[str, str]:
     """LaTeX of all names of a report: as its columns print them, else as its vocabulary does.
 
     `vocabulary`: of the ledger. `columns`: of the sheet.
@@ -22,7 +22,7 @@ def latex_names(vocabulary: Vocabulary, columns: Iterable[Column] = ()) -> dict[
     return names
 
 
-def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "") -> str:
+def name_latex(name: str, names: Mapping[str, str], index: str = "") -> str:
     r"""Print the name of a quantity.
 
     Parameters
@@ -36,10 +36,10 @@ def name_latex(name: str, names: Mapping[str, str] | None = None, index: str = "
 
     Examples
     --------
-    >>> name_latex("x_m", index="k"), name_latex("n_pairs"), name_latex("v", {"v": "v'%s"}, "2")
+    >>> name_latex("x_m", {}, "k"), name_latex("n_pairs", {}), name_latex("v", {"v": "v'%s"}, "2")
     ('x_{m_{k}}', 'n_{\\mathrm{pairs}}', "v'_{2}")
     """
-    return with_index(names[name] if names and name in names else spelt(name), index)
+    return with_index(names[name] if name in names else spelt(name), index)
 
 
 def join(terms: Iterable[tuple[bool, str]]) -> str:

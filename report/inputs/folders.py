@@ -21,12 +21,12 @@ INPUTS = "inputs"
 """Where a crate holds what it was built from: a report folder again."""
 
 
-def report_folder(word: str | None = None) -> Path:
+def report_folder(word: str | None) -> Path:
     """The report folder that a word of the command line names.
 
     Parameters
     ----------
-    word : str, optional
+    word : str or None
         A folder, or :data:`WORD`; without it, the working directory.
 
     Raises

@@ -14,6 +14,8 @@ _WIDEST = 100
 """Terminal columns of a source line at most."""
 _HIDDEN = frozenset({"Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"})
 """Unicode categories that steer a terminal (or turn its text around) or have no glyph to show."""
+_MOST = 40
+"""Findings that are shown."""
 
 
 @dataclass(frozen=True)
@@ -149,12 +151,12 @@ def render(diagnostic: Diagnostic, color: bool = False) -> str:
     return "\n".join(lines)
 
 
-def render_all(diagnostics: Iterable[Diagnostic], color: bool = False, limit: int = 40) -> str:
+def render_all(diagnostics: Iterable[Diagnostic], color: bool = False) -> str:
     """Show findings one after another with a line that counts them; past the limit they are only counted."""
     found = list(diagnostics)
-    shown = [render(diagnostic, color) for diagnostic in found[:limit]]
+    shown = [render(diagnostic, color) for diagnostic in found[:_MOST]]
     count = "1 error" if len(found) == 1 else f"{len(found)} errors"
-    rest = f" ({len(found) - limit} of them not shown)" if len(found) > limit else ""
+    rest = f" ({len(found) - _MOST} of them not shown)" if len(found) > _MOST else ""
     return "\n\n".join([*shown, f"{count}{rest}"])
 
 
