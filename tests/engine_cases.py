@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import Any
 
 import xlsxwriter
+from helpers import whole
 from sympy import (
     And,
     Expr,
@@ -64,10 +65,6 @@ LABELS: dict[str, Sequence[int]] = {}
 DATA: dict[str, Any] = {}
 KNOWN: dict[str, Sequence[Any]] = {}
 """Of a column, a number in closed form or a code for each row; ok says that there is a number."""
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
 
 
 def given(name: str, axis: Axis | None, data: Any, bounds: Bounds | None = None, **more: Any) -> Column:

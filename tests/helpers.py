@@ -1,7 +1,25 @@
 """What tests of several files share."""
 
+from collections.abc import Callable
+
+import pytest
+from sympy import Expr, Symbol
+
 from loopsheet.derivations.contact import damping as model
+from loopsheet.derivations.equation import Equation
+from loopsheet.report.cli import main
 from loopsheet.report.impacts.damping import _MARGIN, _STRONG, _value, _zero
+from loopsheet.report.messages.errors import InputError
+from loopsheet.report.sheet import Axis, Column, Formula
+
+
+def whole(name: str) -> Symbol:
+    return Symbol(name, integer=True, positive=True)
+
+
+def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
+    equation = Equation("(1)", (Symbol(name), expression), "")
+    return Column(name, axis, Formula(equation), positive=positive)
 
 
 def number_for(e: float) -> float:
@@ -11,3 +29,20 @@ def number_for(e: float) -> float:
     (residual,) = model.returned.residuals
     # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
     return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - _MARGIN) / e)
+
+
+def findings_of(read: Callable[..., object]) -> Callable[..., list[str]]:
+    """Give a function that returns what is found while reading as ``code file:line:column+length``."""
+
+    def collect(*args: str, **files: str) -> list[str]:
+        with pytest.raises(InputError) as caught:
+            read(*args, **files)
+        return [f"{found.code} {found.at}+{found.at.length}" for found in caught.value.diagnostics]
+
+    return collect
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    """What `budget` tells."""
+    assert main(["budget", *words]) == 0
+    return capsys.readouterr().out

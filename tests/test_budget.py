@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers import told
 
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
@@ -54,11 +55,6 @@ def campaign(tmp_path: Path) -> str:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return str(tmp_path)
-
-
-def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
-    assert main(["budget", *words]) == 0
-    return capsys.readouterr().out
 
 
 def test_the_test_that_matters_most_is_told_by_its_share(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import openpyxl
 import pytest
+from helpers import told
 from hypothesis import given
 from hypothesis import strategies as st
 from test_budget import FILES
@@ -172,11 +173,6 @@ def folder(tmp_path: Path, more: str) -> str:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text + (more if name == "report.toml" else ""), encoding="utf-8")
     return str(tmp_path)
-
-
-def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
-    assert main(["budget", *words]) == 0
-    return capsys.readouterr().out
 
 
 def test_a_budget_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from helpers import formula, whole
 from judged_values import compare
 from mpmath import mpf
 from sympy import Expr, Integer, Piecewise, Rational, Sum, Symbol, cos, log, sqrt
@@ -17,23 +18,13 @@ from loopsheet.report.cells.values import Status
 from loopsheet.report.engines import exact
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.judge.engines import _Tally
-from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
+from loopsheet.report.sheet import Axis, Column, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import sheet as soft_impact
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
 
 k, n = whole("k"), whole("n")
 ROWS = Axis("rows", k, n)
 a, b = Column("a", ROWS, Given()), Column("b", None, Given())
 x = Symbol("x", positive=True)
-
-
-def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
-    equation = Equation("(1)", (Symbol(name), expression), "")
-    return Column(name, axis, Formula(equation), positive=positive)
 
 
 def root(form: Expr, low: Expr, high: Expr, **more: Any) -> Column:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers import formula, whole
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import (
@@ -102,18 +103,9 @@ def test_what_numpy_has_no_word_for_is_refused() -> None:
 
 
 # ------------------------------------------------------------------------------------------- scopes
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
-
 k, n = whole("k"), whole("n")
 ROWS = Axis("rows", k, n)
 a = Column("a", ROWS, Given())
-
-
-def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
-    equation = Equation("(1)", (Symbol(name), expression), "")
-    return Column(name, axis, Formula(equation), positive=positive)
 
 
 def test_columns_may_be_called_as_the_program_calls_its_own() -> None:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from helpers import findings_of
 
 from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.inputs.cells import check_cells
@@ -86,13 +87,7 @@ def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
 @pytest.fixture
 def findings(read: Reader) -> Callable[..., list[str]]:
     """Give a function that returns the findings of a folder as ``code file:line:column+length``."""
-
-    def collect(*args: str, **files: str) -> list[str]:
-        with pytest.raises(InputError) as caught:
-            read(*args, **files)
-        return [f"{found.code} {found.at}+{found.at.length}" for found in caught.value.diagnostics]
-
-    return collect
+    return findings_of(read)
 
 
 Findings = Callable[..., list[str]]

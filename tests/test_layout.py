@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import whole
 from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Sum, Symbol
@@ -9,11 +10,6 @@ from sympy import Sum, Symbol
 from loopsheet.derivations.equation import Equation
 from loopsheet.report.cells.layout import lay_out, precedents
 from loopsheet.report.sheet import Axis, Column, CountedAxis, Formula, Given, PairAxis, RepeatAxis, Sheet
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
 
 k, i, j, p, q, s, r, t = (whole(name) for name in "kijpqsrt")
 ROWS = Axis("rows", k, whole("n"))

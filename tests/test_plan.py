@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers import whole
 from sympy import Eq, Expr, Integer, Piecewise, Rational, Sum, Symbol, exp, log, simplify, true
 from sympy.core.symbol import Str
 
@@ -21,11 +22,6 @@ from loopsheet.report.plan.nodes import Leaf, Map, Part, RowOrder, RowSum, Total
 from loopsheet.report.plan.text import text
 from loopsheet.report.quantity import Bounds
 from loopsheet.report.sheet import Axis, Column, Formula, Given, PairAxis, Root, Sheet
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
 
 k, n, i, j, p, n_pairs = map(whole, ("k", "n", "i", "j", "p", "n_pairs"))
 ROWS = Axis("rows", k, n)

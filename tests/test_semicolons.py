@@ -5,6 +5,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from helpers import findings_of
 from test_inputs import CSV, TOML, WITH_PUBLISHED, find_workbook
 
 from loopsheet.report.inputs.inputs import Inputs, load
@@ -30,13 +31,7 @@ def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
 @pytest.fixture
 def findings(read: Reader) -> Findings:
     """Give a function that returns the findings of a folder as ``code file:line:column+length``."""
-
-    def collect(*args: str, **files: str) -> list[str]:
-        with pytest.raises(InputError) as caught:
-            read(*args, **files)
-        return [f"{found.code} {found.at}+{found.at.length}" for found in caught.value.diagnostics]
-
-    return collect
+    return findings_of(read)
 
 
 GERMAN = CSV.replace(",", ";").replace(".", ",")

@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 
 import pytest
+from helpers import whole
 from sympy import Expr, IndexedBase, Rel, Sum, Symbol
 
 from loopsheet.derivations.equation import Equation, Ledger
@@ -25,11 +26,6 @@ from loopsheet.report.sheet import (
     SheetError,
 )
 from loopsheet.report.workbook import Measured, Parameter, Workbook
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
 
 k, i, j, p, q, s = (whole(name) for name in "kijpqs")
 n, n_pairs, n_points = whole("n"), whole("n_pairs"), whole("n_points")

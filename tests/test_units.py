@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from helpers import whole
 from sympy import Abs, And, Expr, Max, Min, Piecewise, Rational, Sum, Symbol, exp, log, sign, sin, sqrt
 
 from loopsheet import Method, given, let, mean, measured
@@ -13,11 +14,6 @@ from loopsheet.report.cells import units
 from loopsheet.report.cells.units import DimensionMismatch, dimension_of_unit
 from loopsheet.report.sheet import Axis, Column, Formula, Given, Root, Sheet
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
-
-
-def whole(name: str) -> Symbol:
-    return Symbol(name, integer=True, positive=True)
-
 
 k, n = whole("k"), whole("n")
 ROWS = Axis("rows", k, n)
