@@ -39,7 +39,7 @@ def judged(
     dof, factor = (5.0, 3.0) if shape is Shape.STUDENT else (INF, 2.0)
     budget = Budget("y", "y", (), value, u, dof=dof, level=0.95, factor=factor, shape=shape)
     guard = Guard(read_printed(times, parse_unit("1")).value)
-    return conformity(budget, Limits("y", *ends, guard, Location()), budget)
+    return conformity(budget, Limits("y", Location(), *ends, guard), budget)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_what_is_not_known(value: float, u: float, factor: float, decision: Deci
     high = read_printed("10", parse_unit("1"))
     because_of_it = "" if math.isnan(u) else "who knows"
     budget = Budget("y", "y", (), value, u, level=0.95, factor=factor, because=because_of_it)
-    found = conformity(budget, Limits("y", None, high, Guard(high.value / 10), Location()), budget)
+    found = conformity(budget, Limits("y", Location(), None, high, Guard(high.value / 10)), budget)
     assert (found.decision, found.because) == (decision, because)
     assert math.isnan(found.probability) == (u != 0)
 
@@ -473,7 +473,7 @@ def test_the_report_tells_why_there_is_no_expanded_uncertainty(tmp_path: Path) -
 
 
 def test_limits_of_a_column_are_of_each_row_that_has_none_of_its_own() -> None:
-    limits = [Limits(cell, None, None, Guard(), Location()) for cell in ("E", "E[2]", "m", "x")]
+    limits = [Limits(cell, Location(), None, None, Guard()) for cell in ("E", "E[2]", "m", "x")]
     cells = {"E": ("K", {(1,), (2,), (3,)}), "m": ("g", {()})}
     assert [each.address for each in of_every_row(limits, cells)] == ["E[1]", "E[3]", "E[2]", "m", "x"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, Self, TypeVar
 
 from ..cells.address import index_text, named, parts
 from ..messages.errors import Findings, Location, listing, suggest
@@ -26,20 +26,30 @@ NO_WORDS: Words = MappingProxyType({})
 _ROW = re.compile(r"(?P<word>[^\W\d]\w*) +(?P<number>[0-9]{1,9})")
 
 
-class OfCell(Protocol):
+@dataclass(frozen=True)
+class OfCell:
     """What report.toml says of a cell."""
 
-    @property
-    def address(self) -> str:
-        """As it was written."""
-
-    @property
-    def at(self) -> Location:
-        """Where it was written."""
+    address: str
+    """As it was written: ``alpha[1-2]``, ``alpha_mean``, ``c``, ``c[blank]``, ``test 3``."""
+    at: Location
+    """Where it was written."""
+    rows: tuple[Index, ...] = field(default=(), kw_only=True)
+    """Which rows its word stands for, where one does."""
 
     @property
     def cell(self) -> tuple[str, Index]:
-        """Column and index; no column for a test, no index for a whole column."""
+        """Column and index of the cell, or of the first; no column for a test, no index for a whole column.
+
+        What is no address is a cell that there is not.
+        """
+        return named(self.address, self.rows[0] if self.rows else None)
+
+    def of_words(self, words: Words) -> Self:
+        """The same with the rows that its word stands for: all readings of ``c[blank]``."""
+        name, word = parts(self.address) or ("", "")
+        found = () if self.cell[1] else rows_of(word, words.get(name, {}))
+        return replace(self, rows=tuple(found))
 
 
 class OfRows(Protocol):
@@ -62,39 +72,24 @@ T = TypeVar("T", bound=OfRows)
 
 
 @dataclass(frozen=True)
-class Expectation:
+class Expectation(OfCell):
     """A cell that is expected to be odd, or several of a column, or a test whose cells are."""
 
-    address: str
-    """As it was written: ``alpha[1-2]``, ``alpha_mean``, ``c``, ``c[blank]``, ``test 3``."""
     reason: str
-    at: Location
-    """Where it was written."""
-    rows: tuple[Index, ...] = ()
-    """Which rows its word stands for, where one does."""
     axis: str = ""
     """The index set that its test is of, where there are several tables of rows."""
 
     @property
     def cell(self) -> tuple[str, Index]:
-        """Column and index of the cell, or of the first; no column for a test, no index for a whole column.
+        """That of the cell; of a test its number, without a column.
 
-        What is no address is a cell that there is not.
-
-        >>> Expectation("alpha[1-2]", "one height", Location()).cell
+        >>> Expectation("alpha[1-2]", Location(), "one height").cell
         ('alpha', (1, 2))
-        >>> Expectation("test 3", "heard twice", Location()).cell
+        >>> Expectation("test 3", Location(), "heard twice").cell
         ('', (3,))
         """
-        if row := _ROW.fullmatch(self.address):
-            return "", (int(row["number"]),)
-        return named(self.address, self.rows[0] if self.rows else None)
-
-    def of_words(self, words: Words) -> Expectation:
-        """The same with the rows that its word stands for: all readings of ``c[blank]``."""
-        name, word = parts(self.address) or ("", "")
-        found = () if self.cell[1] else rows_of(word, words.get(name, {}))
-        return replace(self, rows=tuple(found))
+        row = _ROW.fullmatch(self.address)
+        return ("", (int(row["number"]),)) if row else super().cell
 
     def tables(self, tables: Iterable[T]) -> list[T]:
         """The table that its test is in, by what a row is called there: ``test 3`` of the only one, too."""
@@ -126,7 +121,7 @@ def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
     # What has no reason is refused, and its cell is looked at all the same.
     reasons = {address: tables.text((path,), address, "double bounce heard") for address in table}
     return tuple(
-        Expectation(address, reason or "", toml.key(path, address)) for address, reason in reasons.items()
+        Expectation(address, toml.key(path, address), reason or "") for address, reason in reasons.items()
     )
 
 

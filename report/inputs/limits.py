@@ -23,11 +23,11 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import UnitError, examples, is_pure, parse_open
-from ..cells.address import address, named, parts
+from ..cells.address import address
 from ..distribution import LEVEL
 from ..messages.errors import listing
 from ..quantity import Bounds, behind, span
-from .expected import NO_WORDS, Words, check_expected, row_of
+from .expected import NO_WORDS, OfCell, Words, check_expected
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
@@ -68,29 +68,19 @@ class Guard:
 
 
 @dataclass(frozen=True)
-class Limits:
+class Limits(OfCell):
     """The tolerance limits of a cell, which are allowed values themselves; at least one of them is there."""
 
-    address: str
-    """As it was written."""
     low: Printed | None
     high: Printed | None
     guard: Guard
-    at: Location
-    row: tuple[int, ...] | None = None
-    """Which row its word stands for, where one does."""
     text_at: Location | None = None
     """Where its numbers stand, behind the key."""
 
-    @property
-    def cell(self) -> tuple[str, tuple[int, ...]]:
-        """Column and index of the cell; what is no address is a cell that there is not."""
-        return named(self.address, self.row)
-
     def of_words(self, words: Words) -> Limits:
-        """The same with the row that its word stands for: ``slope[steel]``."""
-        name, word = parts(self.address) or ("", "")
-        return self if self.cell[1] else replace(self, row=row_of(word, words.get(name, {})))
+        """The same with the only row that its word stands for: ``slope[steel]``."""
+        found = super().of_words(words)
+        return found if len(found.rows) == 1 else self
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -118,7 +108,7 @@ def read_limits(tables: TomlTables, margins: Mapping[str, str]) -> tuple[Limits,
     stated = tuple(_limits(tables, written, guard, ruled))
     at, other = tables.toml.value("workbook"), {each.cell[0] for each in stated}
     own = (
-        Limits(name, read_printed("0", parse_open(unit)), None, guard, at)
+        Limits(name, at, read_printed("0", parse_open(unit)), None, guard)
         for name, unit in margins.items()
         if name not in other
     )
@@ -140,7 +130,7 @@ def _limits(tables: TomlTables, written: Collection[str], guard: Guard, ruled: b
             tables.findings.add(error.code, at, text=error.text, suggestion=error.suggestion)
         else:
             at, text_at = tables.toml.key(SECTION, cell), tables.toml.value(SECTION, cell)
-            yield Limits(cell, low, high, rule, at, text_at=text_at)
+            yield Limits(cell, at, low, high, rule, text_at)
 
 
 def _own_rule(rule: Guard, text: str, at: Location) -> Guard:
@@ -307,7 +297,7 @@ def check_limits(
         name, index = each.cell
         if name not in cells or index not in cells[name][1]:
             continue
-        if each.row is None and each.address != (own := address(name, index)):
+        if not each.rows and each.address != (own := address(name, index)):
             findings.add("LS506", each.at, name=name, text=each.address, known=own)
         ends, width = [number for number in (each.low, each.high) if number], each.guard.width
         said, unit, at = f"the limit of {name}", cells[name][0], each.text_at or each.at
