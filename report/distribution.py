@@ -74,6 +74,10 @@ PARTS: Mapping[Shape, Callable[[float], float]] = MappingProxyType(
     }
 )
 """The other way round: which part of the width holds the middle share p."""
+FOURTH: Mapping[Shape, float] = MappingProxyType(
+    {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 / 2}
+)
+"""The fourth moment over the square of the variance; 3 for a normal error, as JCGM 100 takes all errors."""
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ class Estimates(NDArrayOperatorsMixin):
         """The values of rows, which are counted from 0 as in an array of NumPy; of a text :meth:`of` that."""
         return self.of(rows) if isinstance(rows, str) else self.value[rows]
 
-    def of(self, row: str) -> Estimates:
+    def of(self, row: str | int) -> Estimates:
         """The estimate of a row, by its number or its word; several may have one word.
 
         Raises
@@ -104,7 +104,7 @@ class Estimates(NDArrayOperatorsMixin):
         KeyError
             There is no such row.
         """
-        named = ([n for n, each in enumerate(own) if each == row] for own in (self.index, self.words))
+        named = ([n for n, each in enumerate(own) if each == str(row)] for own in (self.index, self.words))
         places = next(filter(None, named), [])
         if not places:
             known = listing([*self.index, *filter(None, dict.fromkeys(self.words))])

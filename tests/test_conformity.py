@@ -247,6 +247,35 @@ def test_what_bends_on_its_way_to_a_limit_is_drawn(tmp_path: Path, error: str, i
     assert (square.by.draws, square.budget.draws, line.by.draws) == (20_000, 0, 0)
 
 
+SUM_AND_SQUARE = """
+from loopsheet import Method, given, let
+class Sum(Method):
+    "A sum, and one with a square."
+    a = given("1", "a", positive=True)
+    b = given("1", "b")
+    L = let(2 * a, "twice")
+    y = let(a + b**2, "with a square")
+"""
+
+
+@pytest.mark.parametrize(
+    ("a", "limits", "draws"),
+    [
+        ("10.0, u = 0.02", 'L = "0 .. 24"', 0),  # a straight line, whose way to 0 is 500 u
+        ("10.0, u = 6", 'L = "0 .. 24"', 0),  # many draws have no value: the budget has a distribution
+        ("10.0, u = 1", 'y = "<= 11"', 20_000),  # across its way it bends, and its mean is another
+        ("10.0, u = 1", 'y = "<= 30"', 0),  # but nothing comes near
+    ],
+)
+def test_where_a_probability_is_drawn(tmp_path: Path, a: str, limits: str, draws: int) -> None:
+    (tmp_path / "workbook.py").write_text(SUM_AND_SQUARE, encoding="utf-8")
+    toml = f'workbook = "workbook.py"\n[parameters]\na = "{a}"\nb = "0.0, u = 0.35"\n[limits]\n{limits}\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    (found,) = Study(tmp_path).computed.uncertain().conformities
+    assert found.by.draws == draws
+    assert 0 < found.probability <= 1
+
+
 @pytest.mark.parametrize(
     ("limit", "said"),
     [

@@ -12,7 +12,7 @@ import pytest
 from loopsheet.report.cli import main
 from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
-from loopsheet.report.uncertainty.monte_carlo import Sample, by_draws
+from loopsheet.report.uncertainty.monte_carlo import by_draws, sample
 
 METHOD = '''\
 """Homogeneity of a bath."""
@@ -62,7 +62,7 @@ def test_a_range_that_first_order_lets_be_negative(folder: Path) -> None:
     spread = of["spread"]
     assert spread.value - spread.expanded < 0  # no range is negative
     assert spread.advice == f"{FAILS}; use '{ASKED}'"
-    drawn = by_draws(Sample(report.inputs, report.values, "spread"), 0, spread)
+    drawn = by_draws(sample(report.inputs, report.values, "spread", [0])[0], spread)
     assert drawn.because == "20000 draws: terms of second order were not looked at"
     assert drawn.law is not None
     (low,) = drawn.law.quantile(np.array([0.025]))
@@ -105,3 +105,24 @@ def test_it_fails_where_second_order_is_more_or_u_leads_too_low(
     second: float, value: float, least: float, doubt: str
 ) -> None:
     assert Budget("x", "x", (), value, u=1.0, second=second, factor=2.0, least=least).doubt == doubt
+
+
+TIED = """\
+from loopsheet import Method, let, measured
+class Tied(Method, rows="readings"):
+    x = measured("mm", "reading")
+    width = let(max(x) - min(x), "range", "mm")
+"""
+
+
+def test_the_range_of_equal_readings_is_not_certain(tmp_path: Path) -> None:
+    """Which of them is the greatest, and which the least, changes with any error: slopes are nothing here."""
+    (tmp_path / "workbook.py").write_text(TIED, encoding="utf-8")
+    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.000\n2,2.000\n3,2.000\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "u = 0.01 mm"\n'
+    (tmp_path / "report.toml").write_text(toml + '[limits]\nwidth = "<= 0.005 mm"\n', encoding="utf-8")
+    found = Study(tmp_path).computed.uncertain()
+    assert not found.budgets[0].is_known
+    (conformity,) = found.conformities
+    # Of three normal numbers with u the range is less than u/2 so often (by integration).
+    assert conformity.probability == pytest.approx(0.0664, abs=0.006)

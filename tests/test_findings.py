@@ -14,6 +14,7 @@ from loopsheet.report.result.agreement import Agreement
 from loopsheet.report.result.findings import checks, names_of, of_engine, table_names
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.verdict import (
+    OTHERS,
     REACHABLE,
     UNAMENDED,
     UNREACHABLE,
@@ -153,7 +154,7 @@ def test_beside_known_differences_all_others_have_to_come_out(
     small: Report, verdict: str, passed: bool
 ) -> None:
     """A known misprint does not hide the next one."""
-    others = TableVerdict("others", 2, verdict, 0.5 if passed else 3.0)
+    others = TableVerdict(OTHERS, 2, verdict, 0.5 if passed else 3.0)
     together = refereed(small, others=others)[-1]
     assert together.passed is passed
     said = "the 2 published values that are not known to differ cannot come out"

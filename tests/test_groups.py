@@ -245,6 +245,19 @@ def test_numbers_are_no_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "measurements.csv:2:3" in told
 
 
+def test_a_word_that_is_the_number_of_another_group_is_none(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`level[1]` would be that of the first group to some, and of the one that is called so to others."""
+    rows = tuple((word if word != "B" else "1", y) for word, y in grouped.FEW)
+    assert main(["check", str(grouped.write(tmp_path, rows))]) == 2
+    told = capsys.readouterr().err
+    assert "LS318" in told
+    assert "has the number of another, such as '1'" in told
+    rows = tuple((word if word != "B" else "7", y) for word, y in grouped.FEW)
+    assert main(["check", str(grouped.write(tmp_path / "other", rows))]) != 2
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

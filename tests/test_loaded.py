@@ -59,15 +59,10 @@ def test_a_group_has_its_word(tmp_path: Path) -> None:
     assert not word.isdigit()
     assert [at for at, _, _ in report["level"].rows] == [f"level[{each}]" for each in report["level"].names]
     assert float(report[f"level[{word}]"]) == float(report["level"]["2"]) == report["level"].value[1]
+    assert report["level"].of(2).index == ("2",)
     own = report["y"][word]  # of all rows of the group
     assert own.value.tolist() == [
         y for y, each in zip(report["y"], report["y"].words, strict=True) if each == word
     ]
     with pytest.raises(KeyError, match=f"1, 2, 3, .*{word}"):
         report["level"]["of nobody"]
-
-
-def test_a_number_is_that_of_a_row_though_a_word_is_the_same(tmp_path: Path) -> None:
-    rows = tuple(("1" if word == "B" else word, y) for word, y in grouped.FEW)
-    report = loopsheet.load(grouped.write(tmp_path, rows))
-    assert report["level[1]"].index == ("1",)

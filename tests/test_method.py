@@ -20,6 +20,7 @@ from loopsheet.derivations.reductions import Greatest, Least, Median
 from loopsheet.report.cli import main
 from loopsheet.report.column import Formula, Root, SheetError
 from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.messages.errors import InputError
 from loopsheet.report.method.lines import exact
 from loopsheet.report.sheet import Sheet
 from loopsheet.report.study import Study
@@ -228,6 +229,25 @@ def test_one_row_is_enough_for_a_formula(tmp_path: Path) -> None:
     assert main(["new", str(tmp_path / "c"), "--workbook", "formula"]) == 0
     (tmp_path / "c" / "measurements.csv").write_text("swing,T [s]\n1,2.001\n", encoding="utf-8")
     assert float(load(tmp_path / "c")["g"]) == pytest.approx(4 * math.pi**2 * 0.994 / 2.001**2)
+
+
+def test_pairs_are_of_two_rows_at_least(tmp_path: Path) -> None:
+    code = """\
+from loopsheet import Method, let, mean, measured, pairs
+class Steps(Method):
+    x = measured("mm", "reading")
+    first, second = pairs()
+    step = let(second(x) - first(x), "step", "mm")
+    m = let(mean(step), "mean step", "mm")
+"""
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.0\n", encoding="utf-8")
+    with pytest.raises(InputError, match="LS310"):
+        load(tmp_path)
+    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.0\n2,3.0\n", encoding="utf-8")
+    assert float(load(tmp_path)["m"]) == pytest.approx(1e-3)
 
 
 def test_a_column_of_choices_is_exact(tmp_path: Path) -> None:

@@ -159,7 +159,7 @@ def test_what_is_doubted_of_a_number_is_told_where_it_is_taken(tmp_path: Path) -
     told = {check.name: check for check in oddities(Study(at).computed) if check.kind == "taken"}
     assert told["c"].note == ""
     assert told["d"].note == "warning"
-    assert "ball/out/values.json, where of d: U does not hold: second order counts" in told["d"].message
+    assert "ball/out/values.json, where of d: U may not hold: second order counts" in told["d"].message
 
 
 def test_monte_carlo_draws_what_is_shared_once(apart: Path) -> None:

@@ -99,7 +99,7 @@ class Beside:
         """Whether it can compute the sheet of a program: no loops, and no equations of sums."""
         return not program.loops and not any(root.totals for root in program.roots.values())
 
-    def column(self, name: str, row: int | slice, batch: Mapping[str, Array]) -> tuple[Array, Mask]:
+    def column(self, name: str, row: int | list[int], batch: Mapping[str, Array]) -> tuple[Array, Mask]:
         """A row of a column, or some, for a batch, and of which of its elements it is known (batch,).
 
         `batch` (mapping of column name to float array (batch, rows)): given columns that are others than in

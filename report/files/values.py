@@ -164,8 +164,6 @@ class Expanded(Form, frozen=True, kw_only=True):
         The coverage factor and the coverage probability.
     dof : number or null
         Effective degrees of freedom; null where there are no finite ones.
-    doubt : str
-        Why it may not hold; empty where it does.
     """
 
     cell: Text
@@ -173,7 +171,6 @@ class Expanded(Form, frozen=True, kw_only=True):
     k: Number
     level: Number
     dof: Number = None
-    doubt: Text = ""
 
 
 class Conformity(Form, frozen=True, kw_only=True):
@@ -365,6 +362,12 @@ class Source(Form, frozen=True, kw_only=True):
     dof: Annotated[float, Meta(gt=0)] | None = None
     sample: Text = ""
 
+    def __post_init__(self) -> None:
+        if self.ends is not UNSET:
+            low, high = self.ends
+            if (low or 0) > 0 or (high or 0) < 0 or low == high == 0:
+                raise ValueError(f"the ends of {self.name} do not lie around its number")
+
 
 class Influences(Form, frozen=True, kw_only=True):
     """Where the uncertainty of cells comes from, for reports that take their values from here.
@@ -381,6 +384,8 @@ class Influences(Form, frozen=True, kw_only=True):
         by how much.
     second : table of number
         The standard uncertainty that terms of second order add to a cell.
+    doubts : table of str
+        Of which cells U may not hold, and why.
     correlations : list
         Two places in `sources`, and their coefficient.
     """
@@ -390,6 +395,7 @@ class Influences(Form, frozen=True, kw_only=True):
     cells: dict[Text, list[float]]
     rows: dict[Text, list[tuple[int, float]]] | UnsetType = UNSET
     second: dict[Text, float] = field(default_factory=dict)
+    doubts: dict[Text, Text] = field(default_factory=dict)
     correlations: list[tuple[int, int, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:

@@ -449,7 +449,13 @@ def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: 
             hint = f"write which {name} the row belongs to"
             findings.add("LS403", table.at(each), name=name, allowed="a word", suggestion=hint)
     if fields and all(is_number(each.text) for each in fields if each.text):
-        findings.add("LS318", table.at(fields[0]), name=name, text=fields[0].text)
+        findings.add("LS318", table.at(fields[0]), name=name, what="numbers alone", text=fields[0].text)
+        return
+    words = list(dict.fromkeys(each.text for each in fields))
+    for number, word in enumerate(words, start=1):
+        if word.isdecimal() and number != int(word) in range(1, len(words) + 1):
+            at, what = next(table.at(each) for each in fields if each.text == word), "the number of another"
+            findings.add("LS318", at, name=name, what=what, text=word)
 
 
 def _alike(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Findings) -> Iterator[Alike]:

@@ -444,7 +444,7 @@ def _amount(text: str, start: int, unit: ParsedUnit) -> tuple[Fraction, Fraction
             digits += number
         elif _RELATIVE.fullmatch(behind) and unit.zero:
             raise StatementError("LS431", term, at, f"zero {unit.text} is not nothing: say how much, in K")
-        elif _RELATIVE.fullmatch(behind) and (" of " in behind or unit.dimension):
+        elif _RELATIVE.fullmatch(behind) and ("of" in behind or unit.dimension):
             relative += number / (1_000_000 if behind.startswith("ppm") else 100)
         elif behind in PERCENT:  # of what is a pure number: of the reading, or of 1?
             size = f"{float(number / 100 / unit.scale):.15g}"

@@ -346,13 +346,9 @@ class _Reader:
 
     def doubts(self, labels: Sequence[Index]) -> Iterator[str]:
         """Why the uncertainties of some rows may not hold."""
-        from msgspec import UNSET
-
-        expanded = [] if self.found.expanded is UNSET else self.found.expanded
-        known = {each.cell: each.doubt for each in expanded if each.doubt}
-        for label in labels:
-            words = {address(self.name, label), address(self.name, (self.words.get(label, ""),))}
-            yield from (f"{cell}: {known[cell]}" for cell in sorted(words & known.keys()))
+        known = self.influences.doubts if self.influences else {}
+        cells = (address(self.name, label) for label in labels)
+        yield from (f"{cell}: {known[cell]}" for cell in cells if cell in known)
 
     def value(self, label: Index) -> float:
         return float(self.cells[label][0] or 0.0)
@@ -377,7 +373,7 @@ def _shape(source: Source) -> tuple[Shape, Law | None]:
     shape = known.get(source.distribution, Shape.NORMAL)
     if shape is Shape.EXPONENTIAL:
         return shape, Exponential()
-    if shape is Shape.TRUNCATED and source.ends is not UNSET:
+    if shape is Shape.TRUNCATED and source.ends is not UNSET:  # either side of the number, by its form
         low, high = source.ends
         return shape, TruncatedNormal(-math.inf if low is None else low, math.inf if high is None else high)
     return (shape if shape is Shape.STUDENT or shape in PARTS else Shape.NORMAL), None

@@ -399,7 +399,7 @@ class _Reader:
             if reason := self.why_not(text, pair, several, paired):
                 self.findings.add("LS434", self.toml.value(*path), reason=reason, suggestion="")
                 continue
-            if number := read_number(text):
+            if float(number := read_number(text)):
                 yield (pair[0], pair[1]), number
 
     def why_not(

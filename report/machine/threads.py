@@ -8,6 +8,9 @@ from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TypeVar
 
+MOST = 4
+"""Threads: each holds something large, and who gives them work does that alone."""
+
 Given = TypeVar("Given")
 Found = TypeVar("Found")
 
@@ -20,12 +23,15 @@ def in_threads(function: Callable[[Given], Found], given: Iterable[Given]) -> Ge
     >>> list(in_threads(str.upper, "abc"))
     ['A', 'B', 'C']
     """
-    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    begun: deque[Future[Found]] = deque()
-    with ThreadPoolExecutor(processors) as pool:
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    threads, begun = min(there, MOST), deque[Future[Found]]()
+    pool = ThreadPoolExecutor(threads)
+    try:
         for each in given:
             begun.append(pool.submit(function, each))
-            if len(begun) > processors:
+            if len(begun) > threads:
                 yield begun.popleft().result()
         while begun:
             yield begun.popleft().result()
+    finally:
+        pool.shutdown(cancel_futures=True)

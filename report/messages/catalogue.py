@@ -198,7 +198,7 @@ CATALOGUE: dict[str, Entry] = {
     ),
     "LS318": Entry(
         "groups without words",
-        "{name} has numbers alone, such as '{text}'",
+        "{name} has {what}, such as '{text}'",
         "words, the same for all rows that belong together",
         "put a letter before each number: S{text}",
     ),

@@ -11,7 +11,7 @@ from sympy import Sum
 
 from ...derivations.equation import Ledger
 from ...derivations.vocabulary import Quantity, Vocabulary, spelt
-from ..axis import Axis, CountedAxis, RepeatAxis
+from ..axis import Axis, CountedAxis, PairAxis, RepeatAxis
 from ..charts import Drawn
 from ..column import Column, Formula, SheetError
 from ..quantity import Bounds
@@ -51,7 +51,8 @@ def _table_of(axis: Axis, body: MethodBody, columns: Sequence[Measured]) -> RowT
     head = (axis.row, *groups, *(f"{one.name} [{one.unit}]" for one in own))
     numbered = enumerate(rows, start=1)
     example = ((str(place), *(_words(body, place) if groups else ()), *row) for place, row in numbered)
-    return RowTable(axis.name, axis.row, 1, groups, (head, *example))
+    paired = any(isinstance(each, PairAxis) and each.of is axis for each in body.axes)
+    return RowTable(axis.name, axis.row, 2 if paired else 1, groups, (head, *example))
 
 
 def _means(body: MethodBody, results: Iterable[str]) -> Iterator[tuple[str, str]]:

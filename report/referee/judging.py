@@ -246,7 +246,7 @@ def _together(
     at_least, because = 0.0, ""
     out = [
         value for value, verdict in zip(published, alone, strict=True)
-        if verdict.verdict == UNREACHABLE and source in (ALL, value.source)
+        if verdict.verdict == UNREACHABLE and source in (ALL, OTHERS, value.source)
     ]  # fmt: skip
     if exact:
         word = EXACT

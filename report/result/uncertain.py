@@ -22,6 +22,10 @@ TOLERANCE = 1e-3
 """An eigenvalue that is a smaller part of the largest one tells nothing of its own."""
 
 
+COUNT, UNLOOKED = "second order counts", "second order was not looked at"
+"""Why an expanded uncertainty may not hold."""
+
+
 @dataclass(frozen=True)
 class ErrorSource:
     """One error that is independent of all others, unless a correlation says otherwise."""
@@ -187,7 +191,7 @@ class Budget:
             return f"U is not known: {self.because}"
         if not self.of_second_order:
             return ""
-        return f"{self.hold}: second order {'counts' if self.second else 'was not looked at'}"
+        return f"{self.hold}: {COUNT if self.second else UNLOOKED}"
 
     @property
     def asks_for_draws(self) -> bool:
@@ -335,6 +339,8 @@ class Influence:
     """The standard uncertainty that terms of second order add, where they count."""
     correlations: tuple[tuple[int, int, float], ...]
     """Places of two sources, and their coefficient."""
+    doubts: Mapping[str, str]
+    """Why an expanded uncertainty may not hold, of the cells of which it may not."""
 
 
 @dataclass(frozen=True)

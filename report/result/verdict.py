@@ -42,7 +42,7 @@ UNAMENDED = "not by the known misprints"
 
 ALL = "all"
 """The source of all tables together."""
-OTHERS = "others"
+OTHERS = "all but known differences"
 """That of all values that are not known to differ."""
 INPUT = "input"
 """The source of what is given; every other is a table."""

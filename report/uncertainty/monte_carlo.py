@@ -118,29 +118,23 @@ def draw(
     return _distributed(np.concatenate(found), lost, budget, tolerance, told)
 
 
-class Sample:
-    """Draws of all rows of a column, of which some may be asked for.
+def sample(inputs: Inputs, values: Values, name: str, rows: Sequence[int]) -> list[Array]:
+    """Draws of some rows of a column, of each those that have a value.
 
     `values`: all columns, without a batch.
     """
-
-    def __init__(self, inputs: Inputs, values: Values, name: str) -> None:
-        drawn = _Draws(inputs, values, name, seed=1)
-        self.value, self.there = drawn.of(next(drawn.batches(SOME, SOME)), slice(None))
-
-    def row(self, row: int) -> Array:
-        """Those that have a value."""
-        found: Array = self.value[:, row][self.there[:, row]]
-        return found
+    drawn = _Draws(inputs, values, name, seed=1)
+    value, there = drawn.of(next(drawn.batches(SOME, SOME)), list(rows))
+    return [own[known] for own, known in zip(value.T, there.T, strict=True)]
 
 
-def by_draws(sample: Sample, row: int, budget: Budget, why: str = "") -> Budget:
+def by_draws(draws: Array, budget: Budget, why: str = "") -> Budget:
     """A budget with the distribution of its cell as draws tell it, in place of that of its errors.
 
     Parameters
     ----------
-    sample : Sample
-        Of its column, of which the cell is a row.
+    draws : float array (draws,)
+        As :func:`sample` gives them of the cell.
     budget : Budget
         With a standard uncertainty that is not 0, or of one that is not known: then that of the draws is.
     why : str
@@ -151,7 +145,7 @@ def by_draws(sample: Sample, row: int, budget: Budget, why: str = "") -> Budget:
     Budget
         Without a coverage factor where too many draws have no value.
     """
-    errors = sample.row(row) - budget.value
+    errors = draws - budget.value
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="too many draws have no value")
     if not budget.is_known:
@@ -266,7 +260,7 @@ class _Draws:
         errors -= DIVISORS[shape]
         return errors
 
-    def of(self, batch: dict[str, Array], row: int | slice) -> tuple[Array, NDArray[np.bool_]]:
+    def of(self, batch: dict[str, Array], row: int | list[int]) -> tuple[Array, NDArray[np.bool_]]:
         """One row of the column, or some, and whether they have a value (size,) or (size, rows)."""
         if self.beside is None or not batch:
             return self._asked(batch, row)
@@ -277,14 +271,14 @@ class _Draws:
             own[~known], there[~known] = self._asked(left, row)
         return own, there
 
-    def _asked(self, batch: dict[str, Array], row: int | slice) -> tuple[Array, NDArray[np.bool_]]:
+    def _asked(self, batch: dict[str, Array], row: int | list[int]) -> tuple[Array, NDArray[np.bool_]]:
         """The same, asked of every draw whether it has a value by the rows of the estimate."""
         values = evaluate(self.sheet, self.labels, self.base | batch, self.program)
         size = max((len(own) for own in batch.values()), default=1)
         own, there = values.value[self.name][..., row], values.status[self.name][..., row] == Status.OK
         for others in other_rows(values, self.estimate).values():
-            there = there & ~(others[..., None] if isinstance(row, slice) else others)
-        shape = (size, *own.shape[-1:]) if isinstance(row, slice) else size
+            there = there & ~(others[..., None] if isinstance(row, list) else others)
+        shape = (size, *own.shape[-1:]) if isinstance(row, list) else size
         return np.broadcast_to(own, shape), np.broadcast_to(there, shape)
 
 

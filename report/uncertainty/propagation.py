@@ -25,6 +25,8 @@ from ..inputs.limits import Limits
 from ..judge.chain import Chain, SheetDerivatives
 from ..judge.sensitivity import NumericSweep
 from ..result.uncertain import (
+    COUNT,
+    UNLOOKED,
     Budget,
     Conformity,
     Contribution,
@@ -39,7 +41,7 @@ from ..workbook import Curve, SquareSum, Workbook
 from .conformity import conformity, past
 from .coverage import assigned, coverage, of_sum, with_correlated
 from .misfit import least_squares_of_errors
-from .monte_carlo import Sample, by_draws
+from .monte_carlo import SOME, by_draws, sample
 from .second_order import COUNTS, SecondOrder, beside, root_of
 from .sources import correlated, given, sources
 
@@ -61,6 +63,10 @@ ROUNDINGS = 2.0**10
 """It is at most so many times that, times what share of an input its uncertainty is."""
 MOST_ROWS = 1000
 """Of a curve; of more, the covariance of all residuals is too large to be taken apart."""
+FARTHEST = 5.0
+"""In standard uncertainties: an error comes that far once in a million times."""
+MOST_DRAWN = 1 << 24
+"""Numbers: of a column of which there would be more, each cell is drawn by itself."""
 MOVED = 1e-3
 """A probability that bending changes by less is told by first order: draws leave as much open."""
 NOTHING = 1e-12
@@ -99,7 +105,7 @@ class Spread:
         sizes = [max(map(self._share, source.moves), default=0.0) for source in self.sources]
         self._shares = np.array(sizes or [0.0])
         self._known = _known(values)
-        self._sample: tuple[str, Sample] | None = None
+        self._sample: tuple[str, list[Array]] | None = None
         self._made: SheetDerivatives = like._made if like else SheetDerivatives.of(values.sheet)
         self._program: Program | None = like._program if like else None
         shared = like._chain if like and self._lies_as(like) else None
@@ -353,35 +359,46 @@ class Spread:
         row = self.values.row(self.values.sheet[name], label)
         budget = self.budget(name, row, limits.guard.level)
         if (budget.u > 0 or not budget.is_known) and (budget.second or budget.unlooked):
-            budget = by_draws(self._drawn(name), row, budget)
-        elif budget.u > 0 and self._bends(budget, row, limits):
-            why = "it bends between its value and a limit"
-            return conformity(budget, limits, by_draws(self._drawn(name), row, budget, why))
+            budget = by_draws(self._drawn(name, row), budget)
+        elif budget.factor > 0 and self._bends(budget, row, limits):
+            drawn = by_draws(self._drawn(name, row), budget, "it bends between its value and a limit")
+            return conformity(budget, limits, drawn if drawn.factor > 0 else budget)
         return conformity(budget, limits, budget)
 
-    def _drawn(self, name: str) -> Sample:
-        """Draws of a column, kept until others are asked for: limits of its rows follow one another."""
+    def _drawn(self, name: str, row: int) -> Array:
+        """Draws of a cell; those of its column are kept until others are asked for, if they have room."""
+        if len(self.values.status[name]) * SOME > MOST_DRAWN:
+            return sample(self.inputs, self.values, name, [row])[0]
         if self._sample is None or self._sample[0] != name:
-            self._sample = name, Sample(self.inputs, self.values, name)
-        return self._sample[1]
+            rows = range(len(self.values.status[name]))
+            self._sample = name, sample(self.inputs, self.values, name, rows)
+        return self._sample[1][row]
 
     def _bends(self, budget: Budget, row: int, limits: Limits) -> bool:
         """Whether a cell bends so much on its way to a limit that it is beyond it more or less often.
 
-        That way is the one on which errors reach the limit most probably, to first order.
+        That way is the one on which errors reach the limit most probably, to first order, at most as far as
+        nearly all of them come; and besides, bends to all sides shift the mean.
         """
-        assert self._program is not None
+        if self._program is None or self.second is None:
+            return False
         own = self.contributions([(budget.name, row)])[0]
         sides = [(side, end) for side, end in zip((-1, 1), limits.ends, strict=True) if math.isfinite(end)]
-        along = np.outer(with_correlated(own, self._pairs), [end - budget.value for _, end in sides])
+        ends = np.array([end - budget.value for _, end in sides])
+        way = np.clip(ends, -FARTHEST * budget.u, FARTHEST * budget.u)
         most = np.array([[DIVISORS[s.shape] if s.shape in PARTS else math.inf] for s in self.sources])
-        errors = np.clip(along / budget.u**2, -most, most)
+        errors = np.outer(with_correlated(own, self._pairs), way) / budget.u**2
+        errors = np.clip(errors, -most, most)
         there = beside(self.values, self._program, self.sources, errors)
-        off = there.value[budget.name][..., row] - budget.value - own @ errors
-        for n, (side, end) in enumerate(sides):
-            distances = (side * (end - budget.value - bent) for bent in (0.0, float(off[n])))
-            straight, bent = (past(budget, distance, side) for distance in distances)
-            if not abs(bent - straight) <= MOVED:
+        value = np.broadcast_to(there.value[budget.name], (len(ends), len(self.values.status[budget.name])))
+        off = value[:, row] - budget.value - own @ errors + self.second.shift(budget.name, row)
+        for n, (side, _) in enumerate(sides):
+            straight = past(budget, side * ends[n], side)
+            if math.isnan(off[n]):  # there is no value there
+                bends = past(budget, side * way[n], side) > MOVED
+            else:
+                bends = abs(past(budget, side * (ends[n] - off[n]), side) - straight) > MOVED
+            if bends:
                 return True
         return False
 
@@ -392,31 +409,36 @@ class Spread:
         that would make more than :data:`MOST_PASSED` numbers of all of them is left out.
         """
         own = self.contributions(cells)
-        at, second = self._addressed(cells, own)
+        at, second, doubts = self._addressed(cells, own)
         known = {cell: own[n, : len(self.sources)].tolist() for cell, n in at.items()}
         rows: dict[str, Sequence[tuple[int, float]]] = {}
         for name in columns:
             more: dict[str, Sequence[tuple[int, float]]] = {}
             for some, own in self._blocks(name):
-                at, bent = self._addressed(some, own)
+                at, bent, doubted = self._addressed(some, own)
                 more |= {cell: _moved(own, n) for cell, n in at.items()}
-                second |= bent
+                second, doubts = second | bent, doubts | doubted
                 if sum(1 + len(moved) for moved in (*rows.values(), *more.values())) > MOST_PASSED:
                     break
             else:
                 rows |= more
-        return Influence(self.sources, known, rows, second, self._pairs)
+        return Influence(self.sources, known, rows, second, self._pairs, doubts)
 
     def _addressed(
         self, cells: Sequence[tuple[str, int]], own: Any
-    ) -> tuple[dict[str, int], dict[str, float]]:
-        """Those of some cells that have a value, by their addresses, and what terms of second order add."""
-        second = np.nan_to_num(self._more(cells, own))
+    ) -> tuple[dict[str, int], dict[str, float], dict[str, str]]:
+        """Those of some cells that have a value, by their addresses, what second order adds, and doubts."""
+        more = self._more(cells, own)
+        second = np.nan_to_num(more)
         at = [address(name, self.values.labels(self.values.sheet[name])[row]) for name, row in cells]
         with np.errstate(invalid="ignore"):  # what is beyond all doubles times 0
             finite = np.isfinite(own @ np.zeros(own.shape[1])) & np.isfinite(self._orders(cells, own)[0])
         known = [n for n, (name, row) in enumerate(cells) if finite[n] and not self.values.status[name][row]]
-        return {at[n]: n for n in known}, {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0}
+        added = {at[n]: math.sqrt(second[n]) for n in known if second[n] > 0}
+        moving = abs(own) @ np.ones(own.shape[1])
+        asked = [n for n in known if more[n] != 0 and (second[n] or moving[n])]
+        doubts = {at[n]: f"U may not hold: {COUNT if second[n] else UNLOOKED}" for n in asked}
+        return {at[n]: n for n in known}, added, doubts
 
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..cells.layout import how_large
 from ..cells.values import Values, other_rows
-from ..distribution import Shape
+from ..distribution import FOURTH
 from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
 from ..judge.sensitivity import NumericSweep, without_rounding
@@ -38,9 +38,6 @@ NOISE = 2.0**-40
 
 CORNERS = frozenset({"Abs", "Max", "Min", "Piecewise", "sign"})
 """Functions with corners or jumps, as sympy calls them."""
-
-_FOURTH = {Shape.RECTANGULAR: 9 / 5, Shape.TRIANGULAR: 12 / 5, Shape.ARCSINE: 3 / 2}
-"""The fourth moment over the square of the variance; 3 for a normal error, as JCGM 100 takes all errors."""
 
 
 def root_of(number: int, pairs: Sequence[tuple[int, int, float]]) -> Array:
@@ -83,7 +80,7 @@ class SecondOrder:
         weights: Array,
     ) -> None:
         self.sources, self.root, self.weights = sources, root, weights @ root
-        own = np.array([s.law.moment(4) if s.law else _FOURTH.get(s.shape, 3.0) for s in sources])
+        own = np.array([s.law.moment(4) if s.law else FOURTH.get(s.shape, 3.0) for s in sources])
         leans = np.array([s.law.moment(3) if s.law else 0.0 for s in sources])
         alone = np.count_nonzero(root, axis=0) == 1  # what is mixed of several is taken as normal
         self.fourth, self.third = np.where(alone, own, 3.0), np.where(alone, leans, 0.0)
@@ -134,7 +131,13 @@ class SecondOrder:
 
     def hides(self, name: str, row: int) -> bool:
         """Whether a cell changes, but for terms of third order and higher ones alone, or beyond a corner."""
-        return self.creeps(name, row) > 0 or (name in self.cornered and self._moves(name, row))
+        return self.creeps(name, row) > 0 or (name in self.rough and self._moves(name, row))
+
+    def shift(self, name: str, row: int) -> float:
+        """How far the expectation of a cell is from its value, by its bends along each error."""
+        with np.errstate(all="ignore"):
+            bends = np.sum(self._far[name][..., row] - self._value[name][row]) / FAR**2
+        return float(bends) if self._far[name].ndim > 1 and np.isfinite(bends) else 0.0
 
     def creeps(self, name: str, row: int) -> float:
         """How far a cell is from its value a step away where that is of third order or higher; else 0."""

@@ -78,9 +78,7 @@ def oddities(checks: Iterable[Check]) -> list[form.Oddity]:
 
 def _expanded(budget: Budget) -> form.Expanded:
     expanded, factor, dof = (_short(each) for each in (budget.expanded, budget.factor, budget.dof))
-    return form.Expanded(
-        cell=budget.cell, U=expanded, k=factor, level=budget.level, dof=dof, doubt=budget.doubt
-    )
+    return form.Expanded(cell=budget.cell, U=expanded, k=factor, level=budget.level, dof=dof)
 
 
 def _decided(report: Report, found: Conformity) -> form.Conformity:
@@ -175,6 +173,7 @@ def _influences(report: Report) -> form.Influences | UnsetType:
         rows={name: [(n, _fifteen(each)) for n, each in moved] for name, moved in found.rows.items()}
         or UNSET,
         second={name: _fifteen(each) for name, each in found.second.items()},
+        doubts=dict(found.doubts),
         correlations=list(found.correlations),
     )
 

@@ -16,6 +16,8 @@ from ..sheet import Column, RepeatAxis
 
 FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE})
 """The shapes that a width tells whole."""
+ROUNDING = 1e-12
+"""Of a variance: what is left of it beside a part is nothing, if it is less."""
 LARGEST = 4_000_000
 """Given numbers times cells; of a larger sheet the uncertainties stay as issued: they would take too long."""
 
@@ -118,11 +120,16 @@ def digits(report: Report, column: Column) -> dict[str, Any]:
     second, u = (known.get(name, ()) for known in (report.uncertain().second, report.uncertain().u))
     told = zip(labels, report.values.numbers(name), second, u, strict=False)
     bent = {
-        index_text(label): [float(f"{one:.6g}") for one in (part, value, max(own**2 - part, 0.0))]
+        index_text(label): [float(f"{one:.6g}") for one in (part, value, _beside(own**2, part))]
         for label, value, part, own in told
         if part and value is not None
     }
     return {"digits": least} | ({"kept": kept} if kept else {"bent": bent} if bent and not every else {})
+
+
+def _beside(variance: float, part: float) -> float:
+    """What is left of a variance beside a part: nothing, where that is no more than rounding."""
+    return variance - part if variance - part > ROUNDING * variance else 0.0
 
 
 def _stated(said: Any, sample: str) -> list[dict[str, Any]]:

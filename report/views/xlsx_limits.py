@@ -22,8 +22,8 @@ _LAWS = (Shape.TRUNCATED, Shape.EXPONENTIAL, Shape.SAMPLES, Shape.CONVOLVED)
 SHAPES = {shape.value: f'"{shape.value}"' for shape in (*_SHARES, *_LAWS)}
 """Their names in a formula."""
 CHANCE = "0.00%"
-ROUNDING = "0.000000001"
-"""Standard uncertainties by which rounding may leave a value beyond a limit that it is at, and much more."""
+ROUNDING = "(0.000000001+0.00000000000001*ABS({value}/{u}))"
+"""Standard uncertainties by which rounding may leave a value beyond a limit that it is at, and more."""
 
 
 def as_issued(cell: str, at: float, value: float) -> str:
@@ -98,7 +98,7 @@ def write_limits(
     to.end("low", "lower tolerance limit", "", place.of(low), "General")
     to.end("high", "upper tolerance limit", "", place.of(high), "General")
     if math.isnan(found.probability) or math.isnan(found.guard):
-        why = (math.isnan(budget.factor) and budget.because) or found.because
+        why = (math.isnan(by.factor) and by.because) or found.because
         style.text(sheet, to.row, 0, f"what is decided is not known: {why}")
         return to.row + 1
     width = ""

@@ -52,17 +52,6 @@ def test_an_edited_reading_moves_its_group(open_page: Callable[..., Live], folde
     assert "over 2\u00a0readings" in (live.page.locator("#bar-source").text_content() or "")
 
 
-def test_a_word_that_is_the_number_of_another_group_is_not_that(
-    open_page: Callable[..., Live], tmp_path: Path
-) -> None:
-    rows = tuple(("1" if word == "B" else word, y, "") for word, y in grouped.FEW)
-    folder = grouped.write(tmp_path, rows, "instrument,y [mm],left out")
-    live = opened(folder, open_page)
-    live.type("y", 6, "2.85")
-    again = rebuilt(folder, ("6,1,2.75", "6,1,2.85"))
-    assert driving.differences(live.cells(), again) == []
-
-
 def test_over_how_many_readings_is_told_of_each_group(open_page: Callable[..., Live], tmp_path: Path) -> None:
     """As issued and after an edit: of the group that lacks a reading alone."""
     rows = tuple((word, "" if n == 2 else y, "1.0") for n, (word, y) in enumerate(grouped.FEW))
