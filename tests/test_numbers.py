@@ -225,6 +225,7 @@ def test_other_spellings_are_left_as_text(text: str) -> None:
         ("um", "µm", r"\unit{\text{\textmu}m}"),
         ("m/s", "m/s", r"\unit{m/s}"),
         ("kg/m^3", "kg/m³", r"\unit{kg/m^{3}}"),
+        ("uT^2 / m", "µT²/m", r"\unit{\text{\textmu}T^{2}/m}"),
         ("kg m**-3", f"kg{THIN}m⁻³", r"\unit{kg.m^{-3}}"),
         ("m·s⁻¹", f"m{THIN}s⁻¹", r"\unit{m.s^{-1}}"),
         ("inch", "inch", r"\unit{inch}"),

@@ -184,6 +184,9 @@ def test_what_is_looked_at(tmp_path: Path) -> None:
     (tmp_path / "data" / "b.csv").write_text("22")
     assert _look(tmp_path, ["data/b.csv"]) != first
     assert _look(tmp_path / "none", ["x"]) == {}
-    # What report.toml names, though nothing could be read of it.
-    (tmp_path / "report.toml").write_text('[measurements]\nfile = "data/b.csv"\n')
-    assert set(_look(tmp_path, [])) == {"a.csv", "data/b.csv", "report.toml"}
+    # What report.toml names, though nothing could be read of it; not what somebody writes beside it.
+    toml = '[measurements]\nfile = "data/b.csv"\n[published]\nfile = "c.txt"\n'
+    (tmp_path / "report.toml").write_text(toml)
+    (tmp_path / "c.txt").write_text("1")
+    (tmp_path / "watch.log").write_text("1")
+    assert set(_look(tmp_path, [])) == {"a.csv", "data/b.csv", "c.txt", "report.toml"}

@@ -26,8 +26,10 @@ PAUSE = 0.2
 MOST = 12
 """Of the numbers that moved, how many are named."""
 
-_ELSEWHERE = re.compile(r"""["']([^"'\x00-\x1f]+/[^"'\x00-\x1f]+)["']""")
-"""A string of TOML that may name a file in another folder."""
+_NAMED = re.compile(r"""["']([^"'\x00-\x1f]+)["']""")
+"""A string of TOML, which may name a file."""
+_KINDS = (".csv", ".json", ".py", ".toml")
+"""What a report may be made of besides, as modules of its workbook: a log beside it is none of that."""
 
 Look = dict[str, tuple[int, int, int]]
 
@@ -84,12 +86,12 @@ def _watch(folder: Path, result: Path, build: Callable[[], Iterable[str]]) -> No
 
 
 def _look(folder: Path, names: Iterable[str]) -> Look:
-    """What there is, and when it was written; and of what may lie elsewhere what report.toml names."""
+    """What a report may be made of, and when it was written."""
     found: Look = {}
     files = {*names}
     with suppress(OSError, UnicodeError):
-        files |= {path.name for path in folder.iterdir()}
-        files |= {*_ELSEWHERE.findall((folder / "report.toml").read_text(encoding="utf-8"))}
+        files |= {path.name for path in folder.iterdir() if path.suffix in _KINDS}
+        files |= {*_NAMED.findall((folder / "report.toml").read_text(encoding="utf-8"))}
     for name in sorted(files):
         try:
             status = (folder / name).stat()

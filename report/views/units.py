@@ -15,7 +15,7 @@ _TOKEN = re.compile(
     r"(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(?:_\w+)?|[°%])"
     r"|(?P<power>\s*(?:\^|\*\*)\s*(?:\(\s*(?P<enclosed>[^()]+?)\s*\)|(?P<exponent>[+-]?\w+(?:\.\d+)?))"
     r"|(?P<raised>[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))"
-    r"|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<over>\s*[/∕]\s*)|(?P<other>.)"
+    r"|(?P<over>\s*[/∕]\s*)|(?P<times>\s*[*·⋅×.]\s*|\s+)|(?P<other>.)"
 )
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
 
