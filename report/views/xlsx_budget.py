@@ -365,7 +365,7 @@ class _Written:
         row = self.statement(row + len(lines), at)
         if budget.shape is Shape.CONVOLVED:
             told = f"{budget.because}, as issued: they do not follow an edit"
-            instead = "these as issued, and how their kurtosis changed: it may be 2 % off"
+            instead = "these as issued, and how their kurtosis changed: some percent are left open"
             self.style.text(self.sheet, row, 0, "k comes from", "name")
             said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
             self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
@@ -486,9 +486,10 @@ class _Written:
     def by_kurtosis(own: str, at: Mapping[str, str], budget: Budget, issued: str, otherwise: str) -> str:
         """The coverage factor of a sum whose parts have changed, in proportion to its excess kurtosis.
 
-        It is that of a normal distribution, or t, where there is none, and as issued where it is the same:
-        exact at both ends, and between them within 2 % or so, where contributions change by a tenth, within
-        0.3 %. Empty where a distribution is none of those that a word tells.
+        It is that of a normal distribution, or t, where there is none, and as issued where it is the same. Of
+        sums drawn at random it is within 2 % where contributions change by a tenth, most within 0.3 %; where
+        they change by half, most are within 2.5 %. Empty where a distribution is none of those that a word
+        tells.
         """
         if budget.shape is not Shape.CONVOLVED or any(each.source.law for each in budget.contributions):
             return ""
