@@ -157,7 +157,7 @@ def test_beside_known_differences_all_others_have_to_come_out(
     others = TableVerdict(OTHERS, 2, verdict, 0.5 if passed else 3.0)
     together = refereed(small, others=others)[-1]
     assert together.passed is passed
-    said = "the 2 published values that are not known to differ cannot come out"
+    said = "the 2 published values that are neither known to differ nor out of reach cannot come out"
     assert (said in together.message) is not passed
 
 

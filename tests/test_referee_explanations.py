@@ -334,8 +334,6 @@ def test_what_is_pinned_does_not_hide_the_next_error() -> None:
     assert [each[:3] for each in changes(of)[0]] == [("unit", "x", ())]
     assert (of.explanations[0].values, of.explanations[0].of) == (3, 4)
     assert of.pinned == ()
-    assert not of.others_come
-    assert found(SHEET, {"x": [pure("1.233"), pure("2.313")]}, cells).others_come
     known = [replace(cell, explained="misprint tenfold[2]") if cell.pin else cell for cell in cells]
     of = found(SHEET, {"x": x}, known)
     assert not words.holds("misprint tenfold[2]", of.explanations)
@@ -344,6 +342,21 @@ def test_what_is_pinned_does_not_hide_the_next_error() -> None:
     assert not words.holds("misprint x[2]", wrong.possible_reasons)
     unpinned = [replace(cell, expect="", pin=None) for cell in cells]
     assert not any(each[0][:3] == ("unit", "x", ()) for each in changes(found(SHEET, {"x": x}, unpinned)))
+
+
+@pytest.mark.parametrize(("tenfold", "come"), [("15.20", True), ("15.30", False)])
+def test_beside_a_known_misprint_all_others_have_to_come_out(tenfold: str, come: bool) -> None:
+    """Each of them is near enough by itself to ten times a square; together they are not."""
+    texts = {"square": ("1.520", "5.350"), "tenfold": (tenfold, "59.50")}
+    pin = Pin("59.50", "53.50")
+    cells = [
+        PublishedValue("Table", name, (row,), pure(text), *(("differs", pin) if text == pin.printed else ()))
+        for name, line in texts.items()
+        for row, text in enumerate(line, 1)
+    ]
+    of = found(SHEET, {"x": [pure("1.2"), pure("2.3")]}, cells)
+    assert of.others is not None
+    assert (of.others.values, of.others_come) == (3, come)
 
 
 @pytest.mark.parametrize(

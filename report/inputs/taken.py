@@ -24,7 +24,6 @@ from typing import TYPE_CHECKING
 from ...derivations.unit_text import UnitError, coherent, parse_unit
 from ..cells.address import address, index_text, named, parts
 from ..distribution import PARTS, Error, Shape
-from ..laws import Exponential, Law, TruncatedNormal
 from ..messages.errors import Location, listing, suggest
 from ..quantity import Printed
 from .expected import row_of
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
     from ...derivations.unit_text import ParsedUnit
     from ..files.form import Index
     from ..files.values import Influences, Result, Source
+    from ..laws import Law
     from ..messages.errors import Findings
     from .number_text import Declared
     from .tomlfile import TomlFile
@@ -368,6 +368,8 @@ class _Reader:
 def _shape(source: Source) -> tuple[Shape, Law | None]:
     """The shape of an error, and its law; draws come as a normal error of their standard uncertainty."""
     from msgspec import UNSET
+
+    from ..laws import Exponential, TruncatedNormal  # which imports NumPy
 
     known = {shape.value: shape for shape in Shape}
     shape = known.get(source.distribution, Shape.NORMAL)

@@ -93,24 +93,25 @@ def referee(
     joint, found = _together(ALL, whole, list(range(len(checkable))), certificate, alone, published, tables)
     if joint.mismatch is None:
         return Referee(alone, tuple(tables), joint, free=inputs.free)
-    which = [n for n, value in enumerate(checkable) if not value.expect]
+    near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
+    asked = [value for value in near if not value.expect]
     others: TableVerdict | None = None
-    if joint.verdict not in (EXACT, REACHABLE) and 0 < len(which) < len(checkable):
-        judged = [
-            (verdict, value) for verdict, value in zip(alone, published, strict=True) if not value.expect
-        ]
-        others = _together(OTHERS, whole, which, certificate, *zip(*judged, strict=True))[0]
+    if joint.verdict not in (EXACT, REACHABLE) and asked and any(value.expect for value in checkable):
+        which = [n for n, value in enumerate(checkable) if value in asked]
+        others = _together(OTHERS, whole, which, certificate, (), ())[0]
     if campaign.states:
-        near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
-        tables = [_allowed(campaign, table, checkable, near) for table in tables]
+        of = {
+            table.source: [value for value in checkable if value.source == table.source] for table in tables
+        }
+        tables = [_allowed(campaign, table, of[table.source], near) for table in tables]
         joint = _allowed(campaign, joint, checkable, near)
-        others = others and _allowed(campaign, others, checkable, near)
+        others = others and _allowed(campaign, others, asked, near)
     explained, pinned = tuple[Explained, ...](), tuple[Explained, ...]()
     tried: Tried | None = None
-    asked = [value for value in published if not _is_gone(campaign, value)]
-    if len(checkable) < len(asked):
+    there = [value for value in published if not _is_gone(campaign, value)]
+    if len(checkable) < len(there):
         # What was published once had a value: a change must give it one.
-        whole = Problem.of(campaign, asked)
+        whole = Problem.of(campaign, there)
         found = meet(whole)
     if found.mismatch > 1 and joint.verdict != WITHIN:
         explained, tried, pinned = _explained(whole, step)
@@ -173,7 +174,7 @@ def _explained(
 def _allowed(
     campaign: Campaign,
     table: TableVerdict,
-    checkable: Sequence[PublishedValue],
+    asked: Sequence[PublishedValue],
     near: Sequence[PublishedValue],
 ) -> TableVerdict:
     """A table, with another word if the digits do not allow it and the stated uncertainties do.
@@ -181,10 +182,6 @@ def _allowed(
     Each value by itself has to be as near as its own uncertainty says, and all of them have to come out of
     one input, each number of which is as near to its print as is stated of it.
     """
-    asked = [
-        value for value in checkable
-        if table.source in (ALL, value.source) or (table.source == OTHERS and not value.expect)
-    ]  # fmt: skip
     if table.possible or not all(value in near for value in asked):
         return table
     problem = Problem.of(replace(campaign, stated=True), asked)
@@ -246,7 +243,7 @@ def _together(
     at_least, because = 0.0, ""
     out = [
         value for value, verdict in zip(published, alone, strict=True)
-        if verdict.verdict == UNREACHABLE and source in (ALL, OTHERS, value.source)
+        if verdict.verdict == UNREACHABLE and source in (ALL, value.source)
     ]  # fmt: skip
     if exact:
         word = EXACT

@@ -42,8 +42,8 @@ UNAMENDED = "not by the known misprints"
 
 ALL = "all"
 """The source of all tables together."""
-OTHERS = "all but known differences"
-"""That of all values that are not known to differ."""
+OTHERS = "all others"
+"""That of all values that are neither known to differ nor out of reach by themselves."""
 INPUT = "input"
 """The source of what is given; every other is a table."""
 
@@ -246,7 +246,8 @@ class Referee:
     slips: tuple[Explanation, ...] = ()
     """One slip each that would explain what the stated uncertainties explain as well."""
     others: TableVerdict | None = None
-    """All values that are not known to differ; None if all are, or none is."""
+    """All values that are neither known to differ nor out of reach by themselves; None where none is known to
+    differ, or there are no others."""
     pinned: tuple[Explanation, ...] = ()
     """What explains the known differences where values that are none of them do not come out."""
 
@@ -264,7 +265,7 @@ class Referee:
 
     @property
     def others_come(self) -> bool:
-        """Whether all that is not known to differ comes out: a known misprint does not hide the next one."""
+        """Whether all others come out: a known misprint does not hide the next one."""
         return self.as_printed or self.others is None or self.others.possible
 
     @property

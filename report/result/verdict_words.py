@@ -205,7 +205,7 @@ def _whose(table: verdict.TableVerdict) -> str:
         return f"all {n} published values together" if n > 1 else "the published value"
     if table.source == verdict.OTHERS:
         told = f"the {n} published values that are" if n > 1 else "the published value that is"
-        return f"{told} not known to differ"
+        return f"{told} neither known to differ nor out of reach"
     return f"the {n} values of {table.source}" if n > 1 else f"the value of {table.source}"
 
 

@@ -360,7 +360,7 @@ class Spread:
         budget = self.budget(name, row, limits.guard.level)
         if (budget.u > 0 or not budget.is_known) and (budget.second or budget.unlooked):
             budget = by_draws(self._drawn(name, row), budget)
-        elif budget.factor > 0 and self._bends(budget, row, limits):
+        elif budget.u > 0 and budget.factor > 0 and self._bends(budget, row, limits):
             drawn = by_draws(self._drawn(name, row), budget, "it bends between its value and a limit")
             return conformity(budget, limits, drawn if drawn.factor > 0 else budget)
         return conformity(budget, limits, budget)
