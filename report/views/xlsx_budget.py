@@ -365,7 +365,7 @@ class _Written:
         row = self.statement(row + len(lines), at)
         if budget.shape is Shape.CONVOLVED:
             told = f"{budget.because}, as issued: they do not follow an edit"
-            instead = "these as issued, and how their kurtosis changed: some percent are left open"
+            instead = f"{budget.because} as issued, and how their kurtosis changed: it may be some % off"
             self.style.text(self.sheet, row, 0, "k comes from", "name")
             said = f'=IF({self.unmoved(at)},"{told}","{instead}")'
             self.style.formula(self.sheet, row, 1, said, told, self.style("text"))
