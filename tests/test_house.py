@@ -106,7 +106,7 @@ MAY_IMPORT: dict[str, tuple[set[str], set[str]]] = {
         NUMERIC,
     ),
     "report.uncertainty": (
-        DECLARED | rooms("engines", "inputs", "judge", "machine.threads", "result", "uncertainty"),
+        DECLARED | rooms("engines", "inputs", "judge", "result", "uncertainty"),
         {"numpy", "scipy"},
     ),
     "report.referee": (

@@ -1,9 +1,7 @@
 """Draws through the sheet: the additive models of JCGM 101, the paper, and what has no moments."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -256,15 +254,3 @@ def test_draws_that_are_sorted_at_their_ends_tell_what_sorted_ones_do(number: in
         monte_carlo._tail,
     ):
         assert tell(parted) == tell(ordered)
-
-
-def test_threads_draw_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    report = Study(PAPER).computed
-    budget = Spread(report.inputs, report.values).budget("alpha_mean", 0)
-    found = draw(report.inputs, report.values, budget, 60_000, tolerance=0.0)
-
-    def one_after_the_other(function: Callable[[Any], Any], given: Iterable[Any]) -> Iterator[Any]:
-        yield from map(function, given)
-
-    monkeypatch.setattr(monte_carlo, "in_threads", one_after_the_other)
-    assert draw(report.inputs, report.values, budget, 60_000, tolerance=0.0) == found

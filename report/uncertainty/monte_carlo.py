@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -27,7 +26,6 @@ from ..engines.numpy_beside import BESIDE, Beside
 from ..inputs.inputs import Inputs
 from ..judge.enclosure import Enclosure
 from ..laws import Samples
-from ..machine.threads import in_threads
 from ..quantity import SMALLEST
 from ..result.uncertain import Budget, Distributed, ErrorSource
 from ..sheet import Sheet
@@ -101,20 +99,15 @@ def draw(
     told: list[tuple[float, ...]] = []
     lost, tolerance = 0, _tolerance(budget.u) if tolerance is None else tolerance
 
-    def batch_told(batch: dict[str, Array]) -> tuple[Array, int, tuple[float, ...]]:
+    for number, batch in enumerate(drawn.batches(size, most), start=1):
+        step(f"drawing {number * size} times")
         own, there = drawn.of(batch, row)
-        own = own[there]
-        return own, there.size - own.size, _told(own, budget.level)[0]
-
-    with closing(in_threads(batch_told, drawn.batches(size, most))) as batches:
-        for number, (own, without, of_batch) in enumerate(batches, start=1):
-            step(f"drawing {number * size} times")
-            found.append(own)
-            lost += without
-            if own.size:
-                told.append(of_batch)
-            if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
-                break
+        found.append(own[there])
+        lost += own.size - found[-1].size
+        if found[-1].size:
+            told.append(_told(found[-1], budget.level)[0])
+        if number >= FEWEST and len(told) == number and _is_enough(told, tolerance):
+            break
     return _distributed(np.concatenate(found), lost, budget, tolerance, told)
 
 
