@@ -334,31 +334,30 @@ def test_what_is_wrong_is_told_where_it_stands(read: Read, section: str, code: s
     assert (at.source or "")[(at.column or 1) - 1 :][: at.length] == culprit
 
 
+def correlated(folder: Path, names: str, error: str, **pairs: str) -> Inputs:
+    """Read a folder with some numbers, each with that error, and coefficients of pairs: ``ab="0.9"``."""
+    lines = "".join(f'    {name} = given("1", "{name}")\n' for name in names)
+    code = f"from loopsheet import Method, given, let\nclass Several(Method):\n{lines}"
+    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0{error}"\n' for n in names)
+    toml += "[uncertainty.correlation]\n"
+    toml += "".join(f'"{one}, {other}" = "{r}"\n' for (one, other), r in pairs.items())
+    (folder / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    return load(folder, find_workbook)
+
+
 def test_of_correlations_those_that_clash_are_named(tmp_path: Path) -> None:
     """The correlation of d with another clashes with none."""
-    lines = "".join(f'    {name} = given("1", "{name}")\n' for name in "abcd")
-    code = f"from loopsheet import Method, given, let\nclass Four(Method):\n{lines}"
-    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0"\n' for n in "abcd")
-    toml += '[uncertainty.correlation]\n"a, b" = "0.9"\n"b, c" = "0.9"\n"a, c" = "-0.9"\n"a, d" = "0.1"\n'
-    (tmp_path / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
     with pytest.raises(InputError, match="these correlations of a, b and c cannot hold together"):
-        load(tmp_path, find_workbook)
+        correlated(tmp_path, "abcd", "", ab="0.9", bc="0.9", ac="-0.9", ad="0.1")
 
 
 def test_correlations_that_just_hold_together_do(tmp_path: Path) -> None:
     """What is correlated with each of two as far as it can be: 0.6^2 + 0.8^2 is 1, and of doubles more."""
-    lines = "".join(f'    {name} = given("1", "{name}")\n' for name in "abc")
-    code = f"from loopsheet import Method, given, let\nclass Three(Method):\n{lines}"
-    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0, u = 0.1"\n' for n in "abc")
-    toml += '[uncertainty.correlation]\n"a, b" = "0.6"\n"a, c" = "0.8"\n'
-    (tmp_path / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    found = load(tmp_path, find_workbook).uncertainty.correlations
+    found = correlated(tmp_path, "abc", ", u = 0.1", ab="0.6", ac="0.8").uncertainty.correlations
     assert found == {("a", "b"): 0.6, ("a", "c"): 0.8}
-    (tmp_path / "report.toml").write_text(toml.replace('"0.8"', '"0.8001"'), encoding="utf-8")
     with pytest.raises(InputError, match="cannot hold together"):
-        load(tmp_path, find_workbook)
+        correlated(tmp_path, "abc", ", u = 0.1", ab="0.6", ac="0.8001")
 
 
 @pytest.mark.parametrize("share", ["99.99999999999999999 %", "0.00000000000000000001"])

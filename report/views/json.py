@@ -82,13 +82,13 @@ def _expanded(budget: Budget) -> form.Expanded:
 
 
 def _decided(report: Report, found: Conformity) -> form.Conformity:
-    low, high = (float(end) if math.isfinite(end) else None for end in found.acceptance)
+    low, high = map(_finite, found.acceptance)
     return form.Conformity(
         cell=found.budget.cell,
         limits=str(found.limits),
         acceptance=(low, high),
         accepted=accepted(report, found) if found.guard > 0 else "",
-        probability=None if math.isnan(found.probability) else float(found.probability),
+        probability=_finite(found.probability),
         decision=found.decision.value,
     )
 
@@ -186,7 +186,7 @@ def _fifteen(u: float) -> float:
 def _error(source: ErrorSource) -> form.Source:
     """A source, by its name where it was stated."""
     report, name = source.origin or ("", source.name)
-    dof, law = None if math.isinf(source.dof) else source.dof, source.law
+    dof, law = _finite(source.dof), source.law
     ends = (_finite(law.low), _finite(law.high)) if isinstance(law, TruncatedNormal) else UNSET
     return form.Source(
         name=name, report=report, distribution=source.shape.value, ends=ends, dof=dof, sample=source.sample
@@ -194,7 +194,7 @@ def _error(source: ErrorSource) -> form.Source:
 
 
 def _finite(number: float) -> float | None:
-    return number if math.isfinite(number) else None
+    return float(number) if math.isfinite(number) else None
 
 
 def _short(u: float) -> float | None:
