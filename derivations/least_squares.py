@@ -360,6 +360,12 @@ class LeastSquares:
         return FitQuantity(str(unknown), title, latex, unknown, Derivation((*self._reduced(m), last)))
 
     @property
+    def normal(self) -> dict[sp.Symbol, Equation]:
+        """The normal equation of each parameter: together they say what the parameters are."""
+        pairs = zip(self.parameters, self.words, strict=True)
+        return {each: normal_equation(sp.diff(self._squares, each), word) for each, word in pairs}
+
+    @property
     def _squares(self) -> sp.Expr:
         if not self.feet:
             return self.total((self.observed - self.model) ** 2)
@@ -381,9 +387,8 @@ class LeastSquares:
         """What leads to the normal equations of all unknowns but the first m."""
         if m == 0:
             own, found = [*self._definitions(*self.columns[0], self.left[0])], list[Step]()
-            for j, (parameter, word) in enumerate(zip(self.parameters, self.words, strict=True)):
-                normal = normal_equation(sp.diff(self._squares, parameter), word)
-                pairs = (*own, (normal, parameter))
+            for j, normal in enumerate(self.normal.items()):
+                pairs = (*own, normal[::-1])
                 found += [_step(self._normal(0, j), pairs, "Write it by the slopes of the model.")]
             return tuple(found) if self.linear else ()
         last, says = m - 1, f"Take what {self.unknowns[m - 1]} moves out of all else."

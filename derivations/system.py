@@ -79,6 +79,10 @@ class System:
             where = self.inside
         return where
 
+    def expands_to_zero(self) -> bool:
+        """Whether every difference of neighbouring members vanishes by expanding it, which is soon seen."""
+        return all(vanishes(self._residual(a, b, NOTHING), cheaply=True) for a, b in pairwise(self.claim))
+
     def _are_roots_of_the_same(self, a: Expr, b: Expr) -> bool:
         """Whether two members that are not negative have the same square."""
         if self.multiplied is not None or not all(is_root(settle(part, self.solution)) for part in (a, b)):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from .archive.crate import added
 from .files.manifest import manifest_of
 from .inputs.folders import INPUTS, holds, is_report, output, told
-from .machine.background import Background, LateArgument
+from .machine.background import Background, LateArgument, Telling
 from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
@@ -207,8 +207,9 @@ def _made(
     with ExitStack() as running:
         # What takes long and needs little of the rest has a process of its own, from when the folder is known
         # to be in order.
-        proving = None if study.are_proved() else running.enter_context(Background(_proofs, study.recipe))
-        refereeing = None
+        proving = refereeing = None
+        if not study.are_proved():
+            proving = running.enter_context(Background(_proofs, study.recipe, Telling()))
         if not study.is_refereed():
             refereeing = running.enter_context(Background(_refereed, study.recipe, LateArgument()))
         asked, formats = formats is not None, _possible(study.prepared, formats, tell)
@@ -222,7 +223,7 @@ def _made(
         if proving is not None:
             study.step("proving the equations")
             with timed("waiting for proofs"):
-                study.proof_data = proving.result()
+                study.proof_data = proving.result(study.step)
         proved = study.proved
         if study.inputs.published_u:
             from .referee.uncertain import compare_uncertainties
@@ -251,9 +252,12 @@ def _made(
     return finished
 
 
-def _proofs(recipe: Recipe) -> dict[str, Any]:
+def _proofs(recipe: Recipe, step: Step) -> dict[str, Any]:
     """In a process of its own: what is known of the algebra."""
-    return Study.of(recipe).proof_data
+    study = Study.of(recipe)
+    assert study.declared  # which tells nothing new
+    study.step = step
+    return study.proof_data
 
 
 def _refereed(recipe: Recipe, plain: LateArgument[tuple[Any, ...]]) -> tuple[Referee, tuple[Comparison, ...]]:

@@ -98,6 +98,36 @@ def test_what_holds_of_all_that_is_let_in_is_proved_and_says_where(line: str) ->
                 assert ("e_i <= 1" if "measured" in line else "e <= 7/1000") in found.why
 
 
+FIT = """
+from sympy import log
+from loopsheet import *
+
+class Curve(Method):
+    R = measured("ohm", "resistance", positive=True)
+    T = measured("K", "temperature", positive=True)
+    R_0 = given("ohm", "reference", positive=True)
+    x = let(log(R / R_0), "logarithm")
+    y = let(1 / T, "reciprocal")
+    A = unknown("A", "1/K")
+    B = unknown("B", "1/K")
+    C = unknown("C", "1/K")
+    line = fit(y, A + B * x + C * x**3)
+    claim(sum(line.residual * x), {}, "no slope is left")
+"""
+"""An equation of Steinhart and Hart's: put into one another, its sums have terms without number."""
+
+
+@pytest.mark.parametrize("right", ["0", "sum(line.residual)", "sum(y) / 7"])
+def test_what_follows_from_normal_equations_follows_of_any_columns(right: str) -> None:
+    scope: dict[str, object] = {}
+    exec(FIT.format(right), scope)
+    found = prove(scope["Curve"].workbook.ledger())[-1]  # type: ignore[attr-defined]
+    assert (found.status is ProofStatus.PROVED) == (right != "sum(y) / 7")
+    assert found.status is not ProofStatus.UNDECIDED
+    if found.rests_on:
+        assert {f"normal equation of the {each}" for each in "ABC"} <= set(found.rests_on)
+
+
 def folder(path: Path, line: str) -> Path:
     code = f'{WORDS}\n\nclass Claimed(Method):\n    """Claims."""\n\n{BODY}    {line}\n'
     (path / "workbook.py").write_text(code, encoding="utf-8")

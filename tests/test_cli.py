@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -21,6 +23,7 @@ from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.result.result import Report
 from loopsheet.report.verbs import VERBS
+from loopsheet.report.verbs.common import Progress
 
 pytestmark = pytest.mark.usefixtures("keeping")  # what is patched here makes nothing that others are given
 
@@ -352,3 +355,15 @@ def test_why_tells_how_sure_a_number_is(capsys: pytest.CaptureFixture[str]) -> N
     assert "  uncertain u = 0.016, of 1.258; 'loopsheet budget'" in capsys.readouterr().out
     assert main(["why", "beta", "paper"]) == 0
     assert "uncertain" not in capsys.readouterr().out
+
+
+def test_a_long_step_is_named_where_stages_alone_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.StringIO()
+    with Progress(stream, patience=0.05) as progress:
+        progress.begun -= 60
+        progress("proving (1)")
+        progress("proving (2)")
+        while "still" not in stream.getvalue():
+            time.sleep(0.01)
+        time.sleep(0.3)
+    assert stream.getvalue() == "proving ...\nstill proving (2) ...\n"

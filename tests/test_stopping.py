@@ -29,7 +29,7 @@ from loopsheet.report.cli import main
 from loopsheet.report.files.form import text
 from loopsheet.report.files.manifest import Manifest, read_manifest
 from loopsheet.report.machine import staging
-from loopsheet.report.machine.background import Background, LateArgument
+from loopsheet.report.machine.background import Background, LateArgument, Telling
 from loopsheet.report.machine.scratch import PREFIX, scratch
 from loopsheet.report.machine.staging import put, staged
 from loopsheet.report.machine.stopping import Stopped, stoppable, unstoppable
@@ -407,6 +407,22 @@ def test_an_argument_may_be_told_while_a_call_runs(program: str, monkeypatch: py
         assert aside.result() == many
     with Background(LateArgument.wait, LateArgument()):
         pass  # nobody tells it, and nobody waits
+
+
+def counted(tell: Telling, number: int) -> int:
+    """What takes some steps."""
+    for each in range(number):
+        tell(f"step {each}")
+    return number
+
+
+@pytest.mark.parametrize("program", [sys.executable, "/nowhere/python"])
+def test_what_a_call_is_about_is_heard_by_whom_waits(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", program)
+    heard: list[str] = []
+    with Background(counted, Telling(), 3) as aside:
+        assert aside.result(heard.append) == 3
+    assert heard == ["step 0", "step 1", "step 2"]
 
 
 # --- how signals are heeded ---

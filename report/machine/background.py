@@ -32,6 +32,16 @@ class LateArgument(Generic[T]):
         return self.told[0]
 
 
+class Telling:
+    """An argument that is called with what is done now, and is heard where the result is waited for."""
+
+    hear: Callable[[str], None]
+
+    def __call__(self, text: str) -> None:
+        """Tell it."""
+        self.hear(text)
+
+
 class Background(Generic[T]):
     """A call of a function in a process of its own; where none may be begun, when the result is asked for.
 
@@ -40,7 +50,7 @@ class Background(Generic[T]):
     function : callable
         Of a module; what it returns must be plain data.
     *arguments : anything
-        Plain data, too; the last may be a :class:`LateArgument`, which has to be told.
+        Plain data, too; the last may be a :class:`LateArgument`, which has to be told, or :class:`Telling`.
     """
 
     def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
@@ -75,18 +85,22 @@ class Background(Generic[T]):
                 self._process.stdin.write(pickle.dumps(value))
                 self._process.stdin.close()
 
-    def result(self) -> T:
-        """Wait for the result; what the function raised is raised here."""
+    def result(self, step: Callable[[str], None] = lambda _: None) -> T:
+        """Wait for the result; what the function raised is raised here, what it tells is told to `step`."""
         if self._process is None or self._process.stdout is None:
             function, arguments = self._call
-            return function(*arguments)
-        told = self._process.stdout.read()
+            return function(*_heard(arguments, step))
+        try:
+            while isinstance(told := pickle.load(self._process.stdout), str):
+                step(told)
+        except (EOFError, pickle.UnpicklingError):
+            told = None
         code = self._process.wait()
         self._close()
-        if not told:
+        if told is None:
             reason = f"a process of ours was ended by somebody else (code {code})"
             raise OSError(errno.ENOMEM, reason)  # the system does so when memory is short
-        outcome, error = pickle.loads(told)
+        outcome, error = told
         if error is not None:
             raise error
         result: T = outcome
@@ -112,6 +126,14 @@ class Background(Generic[T]):
                     pipe.close()
 
 
+def _heard(arguments: tuple[Any, ...], hear: Callable[[str], None]) -> tuple[Any, ...]:
+    """Arguments, of which those that tell something are heard."""
+    for argument in arguments:
+        if isinstance(argument, Telling):
+            argument.hear = hear
+    return arguments
+
+
 def serve(parent: int) -> None:
     """Do in this process what another one asks for, and tell it.
 
@@ -121,16 +143,19 @@ def serve(parent: int) -> None:
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # nothing that is printed goes into the answer
 
+    def tell(told: object) -> None:
+        with suppress(BrokenPipeError):  # nobody waits for it
+            answer.write(pickle.dumps(told))
+            answer.flush()
+
     def work() -> None:
         try:
             function, arguments = pickle.load(sys.stdin.buffer)
-            outcome: tuple[object, Exception | None] = (function(*arguments), None)
+            outcome: tuple[object, Exception | None] = (function(*_heard(arguments, tell)), None)
         except EOFError:
             return  # nobody asks any more
         except Exception as error:
             outcome = (None, error)
-        with suppress(BrokenPipeError):  # nobody waits for it
-            answer.write(pickle.dumps(outcome))
-            answer.flush()
+        tell(outcome)
 
     worker(parent, work)

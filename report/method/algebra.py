@@ -132,6 +132,7 @@ def _premises(
 ) -> list[tuple[Equation, Expr]]:
     """What says of the quantities in formulas what they are, and what each is solved for."""
     found: dict[str, tuple[Equation, Expr]] = {}
+    normal = {name: equation for fit in body.fits for name, equation in fit.normal.items()}
     left = list(formulas)
     while left:
         named = {name_of(cell) for cell in left.pop().atoms(Symbol, Indexed)} & body.columns.keys()
@@ -144,9 +145,9 @@ def _premises(
                     "from without it, from_=[...]",
                     column.name,
                 )
-            equation, cell = column.rule.equation, column.cell
+            equation, cell = normal.get(column.name, column.rule.equation), column.cell
             if typed := _fractions(*equation.sides):
                 equation = equation.at(typed)
             found[column.name] = equation, cell.base if isinstance(cell, Indexed) else cell
-            left += [equation.value] if everything else []
+            left += equation.members if everything else []
     return list(found.values())

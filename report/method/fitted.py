@@ -12,6 +12,7 @@ from typing import Any
 
 from sympy import Abs, Expr, Indexed, IndexedBase, Integer, Min, Rational, Sum, Symbol, diff
 
+from ...derivations.equation import Equation
 from ...derivations.least_squares import FitQuantity, LeastSquares
 from ...derivations.reductions import Greatest, Least
 from ...derivations.unit_text import parse_open
@@ -132,6 +133,17 @@ class DeclaredFit:
         self.columns = (*new, *(made[part.name] for part in parts))
         self._rows = made[fit.names["fitted"]], made[fit.names["residual"]]
         self.letters = tuple(part.name for part in parts if part.latex)
+
+    @property
+    def normal(self) -> dict[str, Equation]:
+        """What an equation of its own says each parameter is, of a model that is linear in them.
+
+        What is computed takes them from the last to the first, by helpers: a proof that begins with these
+        would have far more to see through.
+        """
+        fit = self._fit
+        every = fit.normal if fit.linear and self._of is None else {}
+        return {str(each): replace(equation, conditions=fit.enough) for each, equation in every.items()}
 
     def _adjusted(self, own: Column, name: str) -> Column:
         """The true values of what was observed, as the fit has them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -128,16 +129,21 @@ def tell(checks: Iterable[Check]) -> None:
 
 
 class Progress:
-    """Says what is being done once it has taken longer than a second; on a terminal in one moving line."""
+    """Says what is being done once it has taken longer than a second; on a terminal in one moving line.
 
-    def __init__(self, stream: TextIO) -> None:
+    `patience`: seconds after which a step is named where stages alone are.
+    """
+
+    def __init__(self, stream: TextIO, patience: float = 10) -> None:
         self.stream, self.begun, self.shown = stream, time.monotonic(), ""
+        self._now, self._ended = "", threading.Event()
+        self._patience, self._beside = patience, threading.Thread(target=self._name_the_long, daemon=True)
 
     def __call__(self, text: str) -> None:
         """Tell what is begun."""
+        self._now = text = visible(text)
         if time.monotonic() - self.begun < 1:
             return
-        text = visible(text)
         if self.stream.isatty():
             self.stream.write("\r" + text.ljust(len(self.shown)))
             self.shown = text
@@ -147,11 +153,23 @@ class Progress:
             self.shown = stage
         self.stream.flush()
 
+    def _name_the_long(self) -> None:
+        named = before = ""
+        while not self._ended.wait(self._patience):
+            if self._now == before != named:
+                named = before
+                self.stream.write(f"still {named} ...\n")
+                self.stream.flush()
+            before = self._now
+
     def __enter__(self) -> Progress:
+        if not self.stream.isatty():
+            self._beside.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         """Clear the moving line."""
+        self._ended.set()
         if self.stream.isatty() and self.shown:
             self.stream.write("\r" + " " * len(self.shown) + "\r")
             self.stream.flush()
