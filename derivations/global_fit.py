@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sympy import Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
+from sympy import Abs, Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
 from .equation import Derivation, Equation, Kind, define
@@ -239,9 +239,12 @@ bowl: Expr = Max((BE[k] / XM[k]) ** 2, 1 - UE[k] ** 2 * W[k] * R[k] * diff(by_re
 """Positive but where a restitution of zero is a top of a test's squares, which no step leaves, and not their
 least: the second is their second derivative there, over that of the restitution's own square."""
 _more_alpha, _less_force = exponent.sides[1], force.sides[1]
-alpha_step: Expr = ALPHA + (S_XX * _more_alpha - S_DX * _less_force) / Delta
+_step = (S_XX * _more_alpha - S_DX * _less_force) / Delta
+_part = 1 / Max(1, Abs(_step) / (Rational(3, 10) * _A))
+"""Of a step, where tangents lead too far: imprints that are shallow beside their approach bend so much."""
+alpha_step: Expr = ALPHA + _part * _step
 """The next exponent, by least squares along the tangents: it stays where (L42) and (L43) are 0."""
-force_step: Expr = F_0 * exp(_A * (S_DX * _more_alpha - S_DD * _less_force) / Delta)
+force_step: Expr = F_0 * exp(_part * _A * (S_DX * _more_alpha - S_DD * _less_force) / Delta)
 """The next force, which stays positive."""
 force_start: Expr = (
     (alpha_0 + 1) * m_red * v_0**2 / (2 * x_0) * (1 - (beta + 1) / (alpha_0 + 1) * _mean_e2) ** (alpha_0 + 1)

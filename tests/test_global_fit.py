@@ -316,3 +316,19 @@ def test_twelve_tests_at_four_heights() -> None:
     alpha = values.value["alpha_eiv"][:, 0]
     assert (values.status["alpha_eiv"] == Status.OK).all()
     assert alpha.std() <= 0.034
+
+
+def test_imprints_that_are_shallow_beside_their_approach_have_a_fit() -> None:
+    """There the depth bends so much with the exponent that whole steps lead out of all bounds."""
+    rng, number = np.random.default_rng(1), 400
+    alpha, rate = rng.uniform(1.0, 1.5, (number, 1)), rng.uniform(0.01, 0.25, (number, 1))
+    most = np.sqrt((alpha + 1) / (BETA + 1)) * rng.uniform(0.97, 0.999, (number, 1))
+    v, noise = np.sort(rng.uniform(1.5, 5, (number, 4))), 10 ** rng.uniform(-4, -2, (number, 1))
+    e = most * (v / v[:, :1]) ** -rate
+    true = np.array([v, e, depth(v, e, alpha, 0.75 * C * 4e-5**alpha, 4e-5)])
+    us = true * np.array([1, 0.3, 1]).reshape(3, 1, 1) * noise
+    values = fitted(*(true + us * rng.standard_normal(true.shape)), *us)
+    settled = values.status["alpha_eiv"][:, 0] == Status.OK
+    assert settled.mean() > 0.99
+    chi2 = values.value["chi2_eiv"][settled, 0]
+    assert chi2.mean() == pytest.approx(2, abs=4 * np.sqrt(4 / number))
