@@ -335,7 +335,7 @@ def examples(unit: ParsedUnit) -> str:
     """Return units of the same dimension, for "allowed"."""
     names = [name for name, (_, dimension) in COMMON.items() if dimension == unit.dimension]
     names += [name for name in _SHIFTED if unit.zero]
-    plain = [name for name in names if name.isascii()]
+    plain = [name for name in names if name.isascii() and not (unit.zero and "delta" in name)]
     shown = [unit.text, *(name for name in plain if name != unit.text)][:5]
     if is_pure(unit.text):
         return "1 for a pure number, or percent"

@@ -382,6 +382,9 @@ def read(tmp_path: Path, more: str) -> Inputs:
         ("10.0 mm +/- 0.10", "9.90 to 10.10 mm"),
         ("-250 mm +- 2 %", "-255 to -245 mm"),
         ("1.30+-0.05", "1.25 to 1.35"),
+        ("0.00 +- 0.15 %", "-0.15 to 0.15 %"),
+        ("0.00 % +- 0.15 %", "-0.15 to 0.15 %"),
+        ("297.6 K +- 2 %", "291.648 to 303.552 K"),
         ("25 degC +- 0.5 K", "24.5 to 25.5 degC"),
         ("25 +- 0.5 degC, guard = 0.1 K", "24.5 to 25.5 degC"),
     ],
@@ -389,6 +392,22 @@ def read(tmp_path: Path, more: str) -> Inputs:
 def test_what_is_understood(tmp_path: Path, text: str, said: str) -> None:
     (found,) = read(tmp_path, f'[limits]\nq = "{text}"\n').limits
     assert str(found) == said
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("25 % +- 10 %", "write the limits: 22.5 .. 27.5 % or 15 .. 35 %"),
+        ("1.30 +- 5 %", "write the limits: 1.235 .. 1.365 or 1.25 .. 1.35"),
+        ("76.01 degF +- 2 %", "zero degF is not nothing, of which there is a share: say how much, in K"),
+        ("26,38 .. 26,50 kJ/g", "a decimal comma? write 26.50"),
+    ],
+)
+def test_what_could_be_either_says_what_to_write(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, hint: str
+) -> None:
+    assert main(["budget", "alpha_mean", folder(tmp_path, f'[limits]\nalpha_mean = "{text}"\n')]) == 2
+    assert hint in capsys.readouterr().err
 
 
 def test_limits_may_have_a_rule_of_their_own(tmp_path: Path) -> None:
@@ -431,6 +450,8 @@ def test_a_unit_behind_the_second_number_is_that_of_both(tmp_path: Path) -> None
         ('alpha_mean = "1.3"', "LS441", "1.3"),
         ('alpha_mean = "1.25 .. x"', "LS441", "x"),
         ('alpha_mean = "1.30 +- 5 %"', "LS441", "1.30 +- 5 %"),
+        ('alpha_mean = "25 % +- 10 %"', "LS441", "25 % +- 10 %"),
+        ('alpha_mean = "24.5 degC +- 2 %"', "LS441", "24.5 degC +- 2 %"),
         ('alpha_mean = "1.30 +- 0"', "LS441", "1.30 +- 0"),
         ('alpha_mean = "1e40 +- 1"', "LS441", "1e40 +- 1"),
         ('alpha_mean = "5 +- 1e-200"', "LS441", "5 +- 1e-200"),

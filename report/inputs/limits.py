@@ -171,12 +171,18 @@ def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
     is_share = tolerance.unit == "%"
     unit = "" if " " in text["nominal"] or is_share else tolerance.unit  # a unit behind both is that of both
     nominal = _number(f"{text['nominal']} {unit}".strip(), 0, "LS441")
+    if is_share and nominal.number == 0:  # of which no share is meant
+        nominal = replace(nominal, unit="%", scale=tolerance.scale) if nominal.unit == "1" else nominal
+        is_share = nominal.unit != "%"
     known = parse_open(nominal.unit)
-    if is_share and nominal.unit == "1":
-        raise StatementError("LS441", text[0], 0, "the tolerance of a pure number is one: 1.30 +- 0.05")
+    if is_share and nominal.unit in ("1", "%"):
+        raise StatementError("LS441", text[0], 0, _either(nominal, tolerance))
+    if is_share and known.zero:
+        said = f"zero {nominal.unit} is not nothing, of which there is a share: say how much, in K"
+        raise StatementError("LS441", text[0], 0, said)
     if tolerance.unit == "1" and nominal.unit != "1":
         width = tolerance.number
-    elif is_share and nominal.unit != "%":
+    elif is_share:
         width = abs(nominal.number) * tolerance.value
     elif (own := parse_open(tolerance.unit)).dimension == known.dimension and own.open == known.open:
         width = tolerance.value / nominal.scale
@@ -195,6 +201,17 @@ def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
     return low, high
 
 
+def _either(nominal: Printed, share: Printed) -> str:
+    """What to write where a percentage may be of a pure number, or of one."""
+    widths = abs(nominal.number) * share.value, share.value / nominal.scale
+    more = behind(nominal.unit)
+    ways = (
+        f"{_decimal(nominal.number - width, 0)} .. {_decimal(nominal.number + width, 0)}{more}"
+        for width in widths
+    )
+    return f"a share of {nominal.text}{more}, or of one? write the limits: {' or '.join(ways)}"
+
+
 def _decimal(number: Fraction, places: int) -> str:
     """In decimal digits, at least so many of them behind the point, and at most fifteen in all."""
     with localcontext(prec=15):
@@ -207,8 +224,9 @@ def _number(text: str, start: int, code: str) -> Printed:
     try:
         number = read_printed(digits, parse_open(unit.strip() or "1"))
     except NumberError as error:
-        hint = error.fields["suggestion"] or "a number, a space and a unit"
-        raise StatementError(code, digits, start, hint) from None
+        comma = re.fullmatch(r"([+-]?\d+),(\d+)", digits)
+        hint = f"a decimal comma? write {comma[1]}.{comma[2]}" if comma else "a number, a space and a unit"
+        raise StatementError(code, digits, start, error.fields["suggestion"] or hint) from None
     except UnitError as error:
         at = start + text.find(unit) + error.start
         raise StatementError(code, error.text, at, error.suggestion) from None

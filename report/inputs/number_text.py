@@ -193,11 +193,10 @@ def read_unit_of(
         findings.add(error.code, at, text=error.text, suggestion=error.suggestion, known=known)
         return None
     at = place(0, max(len(text), 1))
-    if size.dimension != expected.dimension:
-        words = {"known": examples(expected), "suggestion": degrees(text, expected)}
+    unlike = size.dimension != expected.dimension
+    hint = degrees(text, expected) if unlike else misfit(size, expected) if name == like.name else ""
+    if unlike or hint:
+        words = {"known": examples(expected), "suggestion": hint}
         findings.add("LS422", at, name=name, text=text, unit=like.unit, **words)
-        return None
-    if name == like.name and (hint := misfit(size, expected)):
-        findings.add("LS423", at, text=text, suggestion=hint)
         return None
     return size

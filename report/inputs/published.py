@@ -353,7 +353,8 @@ def unit_fits(
         return True  # the unit hangs on an exponent, and is the same
     hint = "" if width and declared.zero else misfit(own, declared)
     if hint:
-        findings.add("LS423", at, text=written, suggestion=hint)
+        known = examples(declared)
+        findings.add("LS422", at, name=name, text=written, unit=unit, known=known, suggestion=hint)
     return not hint
 
 

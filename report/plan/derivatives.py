@@ -340,7 +340,8 @@ def _of_product(product: sp.Expr) -> sp.Expr:
         if isinstance(factor, sp.Pow) and factor.exp == -1 and len(factors) > 1:
             inside = _size(factor) ** 2 * rounding(factor.base)
         if inside != 0:
-            found += _size(product / factor) * inside
+            # Without the factor, not by it: what is chosen by cases may be zero.
+            found += _size(sp.Mul(*(each for each in product.args if each is not factor))) * inside
     return found
 
 

@@ -243,8 +243,11 @@ class Problem:
         def lacking() -> dict[str, Array]:
             start = np.array([own.value[u.column][..., u.row].item() for u in self.unknowns])
             here = self._values(start[None]).value
+            # What rests on nothing that may move has no axis of points.
             return {
-                name: np.nan_to_num(own.value[name] - here[name][0]) for name in here if name in own.value
+                name: np.nan_to_num(each - here[name].reshape(each.shape))
+                for name, each in own.value.items()
+                if name in here
             }
 
         return self.campaign.once(("rounded", *self._printed), lacking)
