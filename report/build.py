@@ -19,7 +19,7 @@ from .machine.provenance import processor, sources
 from .machine.staging import put, staged
 from .machine.timing import timed
 from .messages.errors import UsageError, diagnose, unknown
-from .stages import Step, book, refereed_values, refuse_too_many_rows, silent
+from .stages import Step, book, refereed_values, refuse_too_many_rows, silent, with_uncertainties
 from .study import Recipe, Study
 from .views import FORMATS, ON_REQUEST
 
@@ -224,12 +224,7 @@ def _made(
             study.step("proving the equations")
             with timed("waiting for proofs"):
                 study.proof_data = proving.result(study.step)
-        proved = study.proved
-        if study.inputs.published_u:
-            from .referee.uncertain import compare_uncertainties
-
-            beside = compare_uncertainties(proved.inputs, proved.values, study.step)
-            proved = replace(proved, comparisons_u=beside)
+        proved = with_uncertainties(study.proved, study.step)
         content = b""
         if "xlsx" in formats:
             study.step("writing report.xlsx")

@@ -248,11 +248,19 @@ def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Rep
 
     `step`: told what is begun. `keep`: gives what is made of the folder of the report, made now or before.
     """
+    found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step, keep)
+    return with_uncertainties(replace(report, referee=found, comparisons=comparisons), step)
+
+
+def with_uncertainties(report: Report, step: Step = silent) -> Report:
+    """The report with everything that is published of uncertainties beside what is computed."""
+    if not report.inputs.published_u:
+        return report
     from .referee.uncertain import compare_uncertainties
 
-    found, comparisons = refereed_values(Prepared(report.inputs, report.sheet), report.values, step, keep)
-    uncertain = compare_uncertainties(report.inputs, report.values, step)
-    return replace(report, referee=found, comparisons=comparisons, comparisons_u=uncertain)
+    compute = partial(computing, report.sheet)
+    found = compare_uncertainties(report.inputs, report.values, compute, step)
+    return replace(report, comparisons_u=found)
 
 
 def refereed_values(

@@ -221,3 +221,43 @@ def test_a_row_that_stands_there_twice_is_told(made: Made, rows: str, told: str)
             report.write('[expected]\n"reading 6" = "so it was"\n')
         (again,) = (each for each in Study(folder).computed.oddities if each.kind == "twice")
         assert again.message.endswith("as is expected")
+
+
+PERIODS = """\
+from sympy import pi
+from loopsheet import Method, given, let, mean, measured
+
+
+class Pendulum(Method, rows="swings"):
+    \"\"\"g by the period.\"\"\"
+
+    T = measured("s", "period", positive=True)
+    L = given("m", "length", positive=True)
+    Tm = let(mean(T), "mean period", "s")
+    g = let(4 * pi**2 * L / Tm**2, "gravity", "m/s^2")
+"""
+
+
+@pytest.mark.parametrize("off", [1.0, 1.5])
+def test_a_published_scatter_may_be_that_of_digits_that_are_not_printed(tmp_path: Path, off: float) -> None:
+    """Whoever had all digits has another standard deviation than two decimals have, and not any other."""
+    (tmp_path / "workbook.py").write_text(PERIODS)
+    toml = ['workbook = "workbook.py"', "[parameters]", 'L = "0.8403 m, u = 0.5 mm"', "[measurements]"]
+    toml += ['file = "m.csv"', "[published]", 'file = "published.csv"', "[uncertainty]", 'T = "scatter"']
+    (tmp_path / "report.toml").write_text("\n".join(toml))
+    hidden = np.array([1.85357, 1.81807, 1.83837, 1.85647, 1.81823])
+    rows = "".join(f"{n},{each:.2f}\n" for n, each in enumerate(hidden, start=1))
+    (tmp_path / "m.csv").write_text(f"swing,T [s]\n{rows}")
+    u, g = hidden.std(ddof=1) / math.sqrt(5), 4 * np.pi**2 * 0.8403 / hidden.mean() ** 2
+    u_g = g * math.hypot(0.5e-3 / 0.8403, 2 * u / hidden.mean())
+    said = [
+        f"T,u(Tm),,{off * u:.4f},s",
+        f"T,u(g),,{u_g:.3f},m/s^2",
+        f'T,"u(g, T)",,{2 * g * u / 1.838:.3f},m/s^2',
+    ]
+    (tmp_path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *said, ""]))
+    found = Study(tmp_path).refereed.comparisons_u
+    assert [each.verdict for each in found] == ["differs"] * 3
+    assert [each.word for each in found] == ["reachable" if off == 1 else "differs", "reachable", "reachable"]
+    assert [each.as_expected for each in found] == [off == 1, True, True]
+    assert main(["check", str(tmp_path)]) == (0 if off == 1 else 1)

@@ -349,7 +349,7 @@ class Tables:
 
         def told(one: Comparison) -> Inlines | str:
             known = one.as_expected and one.published.reason
-            return self.rich(one.published.reason) if known else one.verdict
+            return self.rich(one.published.reason) if known else one.word
 
         def row(one: Comparison) -> dict[str, str]:
             return {"state": "" if one.as_expected else "unexpected"}

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from ...derivations.unit_text import is_pure, parse_unit
 from ..messages.errors import Findings, Location, listing, suggest
+from ..quantity import Printed, there
 from .number_text import read_unit_of, read_value
 from .stated import Of, StatementError, read_statement, split
 from .taken import alone
 
 if TYPE_CHECKING:
-    from ..quantity import Printed
     from .inputs import Inputs
     from .number_text import Declared
     from .stated import StatedErrors
@@ -178,6 +178,31 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
         free_at={},
         taken=_taken_again(taken, inputs.measured, like),
     )
+
+
+def with_numbers(inputs: Inputs, numbers: Mapping[str, Sequence[float]]) -> Inputs:
+    """Inputs as they would be if some numbers were others than they are printed, all else being the same.
+
+    `numbers`: in SI, by column or parameter; of what is not there nothing is asked.
+    """
+
+    def of(name: str, column: tuple[Printed | None, ...]) -> tuple[Printed | None, ...]:
+        pairs = zip(column, numbers.get(name, ()), strict=False)
+        return tuple(p and replace(p, value=Fraction(value)) for p, value in pairs) or column
+
+    measured = {name: of(name, column) for name, column in inputs.measured.items()}
+    parameters = {name: of(name, (printed,)) for name, printed in inputs.parameters.items()}
+    columns = {
+        name: each.of_others(there(measured[name])) if name in measured else each
+        for name, each in inputs.uncertainty.columns.items()
+    }
+    stated = replace(inputs.uncertainty, columns=columns)
+    said = stated.of(measured)
+    tables = (
+        replace(table, measured={name: said[name] for name in table.measured}) for table in inputs.tables
+    )
+    every = {name: printed for name, (printed,) in stated.of(parameters).items() if printed}
+    return replace(inputs, tables=tuple(tables), parameters=every, uncertainty=stated)
 
 
 def _again(group: tuple[int, ...], inputs: Inputs, like: Sequence[int]) -> tuple[int, ...]:

@@ -184,6 +184,11 @@ class StatedErrors:
         """
         return tuple(part.of(printed, of and f"{of} {n}") for n, part in enumerate(self.parts))
 
+    def of_others(self, numbers: Sequence[Printed]) -> StatedErrors:
+        """The same of other numbers: readings scatter as these do."""
+        parts = (_scatter(numbers, 0) if part.said == SCATTER else part for part in self.parts)
+        return StatedErrors(tuple(parts))
+
 
 _NOTHING = Of()
 

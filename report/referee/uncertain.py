@@ -1,20 +1,29 @@
-"""Published uncertainties beside the computed ones, in the digits that were printed."""
+"""Published uncertainties beside the computed ones, in the digits that were printed.
+
+How readings scatter hangs on digits that are not printed: a standard deviation that differs is looked for
+among the numbers that print as given, along the slopes from those that are printed.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..cells.marks import Marks
 from ..cells.values import Cell, Status, Values
 from ..inputs.about import About
 from ..inputs.inputs import Inputs
+from ..inputs.planned import with_numbers
 from ..result.result import Comparison
+from ..result.verdict import REACHABLE, Verdict
+from ..sheet import Column, Sheet
 from ..uncertainty.monte_carlo import draw
 from ..uncertainty.propagation import Spread
+from .campaign import Array, Campaign
 from .comparison import beside, missing_as_expected, prints_same
 
 if TYPE_CHECKING:
@@ -29,25 +38,39 @@ MOST = 10_000_000
 """Draws, at most."""
 
 
+MOST_MOVED = 300
+"""Numbers that are looked for at once, at most: each takes an evaluation."""
+_HALVINGS = 40
+
+Compute = Callable[[Inputs], Marks]
+"""Computes some columns of a sheet for other inputs."""
+
+
 def compare_uncertainties(
-    inputs: Inputs, values: Values, step: Callable[[str], None] = lambda _: None
+    inputs: Inputs,
+    values: Values,
+    computing: Callable[[Sequence[Column]], Compute],
+    step: Callable[[str], None] = lambda _: None,
 ) -> tuple[Comparison, ...]:
     """Set everything that is published of uncertainties beside what is computed.
 
-    `values`: all columns, without a batch. `step`: told what is begun.
+    `values`: all columns, without a batch. `computing`: makes what computes some columns again. `step`: told
+    what is begun.
     """
     if not inputs.published_u:
         return ()
     asked = _Asked(inputs, values, step)
-    return tuple(asked.compared(each) for each in inputs.published_u)
+    return tuple(asked.refereed(each, computing) for each in inputs.published_u)
 
 
 class _Asked:
     """What is told of cells."""
 
-    def __init__(self, inputs: Inputs, values: Values, step: Callable[[str], None]) -> None:
+    def __init__(
+        self, inputs: Inputs, values: Values, step: Callable[[str], None], like: Spread | None = None
+    ) -> None:
         self.inputs, self.values, self.step = inputs, values, step
-        self.spread = Spread(inputs, values)
+        self.spread = Spread(inputs, values, like)
         self.drawn: dict[tuple[str, float, float], tuple[float, float]] = {}
 
     def compared(self, published: PublishedValue) -> Comparison:
@@ -57,6 +80,65 @@ class _Asked:
         expected = missing_as_expected(there, self.values, self.inputs.expected)
         found = beside(published, self.cell(published), expected=expected)
         return replace(found, instead=self.instead(published)) if found.verdict == "differs" else found
+
+    def refereed(
+        self, published: PublishedValue, computing: Callable[[Sequence[Column]], Compute]
+    ) -> Comparison:
+        """The same; what comes out of numbers that print as given does not differ from them."""
+        found = self.compared(published)
+        if found.verdict != "differs" or published.expect or found.instead:
+            return found
+        self.step(f"refereeing {published.cell}")
+        verdict = self.reached(published, computing)
+        return found if verdict is None else replace(found, refereed=verdict, finding="")
+
+    def reached(
+        self, published: PublishedValue, computing: Callable[[Sequence[Column]], Compute]
+    ) -> Verdict | None:
+        """What numbers that print as given yield, if one of them is what was published; else None."""
+        about, sheet = published.about, self.values.sheet
+        assert about is not None
+        columns = [sheet[name] for name in (about.cell, about.other) if name]
+        above = {each.name for column in columns for each in (column, *sheet.ancestors(column))}
+        part = Sheet(tuple(column for column in sheet.columns if column.name in above))
+        unknowns = list(Campaign(sheet, self.inputs, self.values, {}).unknowns(part, ()))
+        if about.kind in ("low", "high") or len(unknowns) > MOST_MOVED:
+            return None  # draws, and what takes too long
+        compute, like = computing(columns), list[Spread]()
+        start = np.array([unknown.start for unknown in unknowns])
+        low, high = np.array([unknown.interval() for unknown in unknowns]).reshape(-1, 2).T
+
+        def at(point: Array) -> float:
+            numbers: dict[str, list[float]] = {}
+            for unknown, value in zip(unknowns, point.tolist(), strict=True):
+                column = sheet[unknown.column]
+                every = self.values.value[unknown.column]
+                numbers.setdefault(
+                    unknown.column, np.broadcast_to(every, len(self.values.labels(column))).tolist()
+                )[unknown.row] = value
+            inputs = with_numbers(self.inputs, numbers)
+            asked = _Asked(inputs, compute(inputs).values, self.step, *like)
+            like[:] = [asked.spread]
+            return asked.number(about, published.index, 0.0)
+
+        here, printed = at(start), published.printed
+        slopes = np.array([at(np.where(own, high, start)) - here for own in np.eye(len(start), dtype=bool)])
+        ahead = np.sign((float(printed.value) - here) * slopes)
+        corner = np.where(ahead > 0, high, np.where(ahead < 0, low, start))
+        far = at(corner)
+        if not prints_same(far, printed) and (far - float(printed.value)) * (here - float(printed.value)) > 0:
+            return None
+        # Between what prints less and what prints more.
+        ends, found = (0.0, 1.0), far
+        for _ in range(_HALVINGS):
+            if prints_same(found, printed):
+                off = abs(found - float(printed.value)) / float(printed.half_unit)
+                return Verdict(REACHABLE, min(here, found), max(here, found), mismatch=off)
+            share = sum(ends) / 2
+            found = at(start + share * (corner - start))
+            is_ahead = (found - float(printed.value)) * (here - float(printed.value)) > 0
+            ends = (share, ends[1]) if is_ahead else (ends[0], share)
+        return None
 
     def instead(self, published: PublishedValue) -> str:
         """Which of u, U and 2 u prints as another of them was published; empty if none does."""

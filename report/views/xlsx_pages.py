@@ -280,7 +280,7 @@ def _write_published_u(sheet: Any, style: Style, report: Report, row: int) -> No
         style.text(sheet, line, 3, printed.unit)
         style.text(sheet, line, 4, printed.text)
         style.text(sheet, line, 5, one.again)
-        style.text(sheet, line, 8, one.verdict, "unit")
+        style.text(sheet, line, 8, one.word, "unit")
         style.text(sheet, line, 9, value.expect or "same")
         style.text(sheet, line, 10, value.pin.again if value.pin else "")
         style.text(sheet, line, 11, "yes" if one.as_expected else "no")
