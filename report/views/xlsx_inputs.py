@@ -60,9 +60,15 @@ class GivenCells:
             numbers = [None if isinstance(number, str) else number for number in block.values]
             whole = all(number is None or number.is_integer() for number in numbers)
             figures = [None] * len(numbers) if whole else self.report.figures(block.name)
-            for row, (number, figure) in enumerate(zip(numbers, figures, strict=True), start=place.row):
-                form = "0" if whole else number_format(figure)
-                sheet.write(row, place.column, number, style("fixed", form))
+            for row, (number, figure) in enumerate(zip(numbers, figures, strict=True)):
+                at, form = (
+                    (place.row + row, place.column),
+                    style("fixed", "0" if whole else number_format(figure)),
+                )
+                if number is not None and (formula := self.share_of_reading(block, row)):
+                    style.formula(sheet, *at, formula, number, form)
+                else:
+                    sheet.write(*at, number, form)
             return
         for row, each in enumerate(printed):
             at = (place.row + row, place.column)
@@ -77,6 +83,32 @@ class GivenCells:
         sheet.data_validation(*every, self.validation(block))
         refused = {"type": "formula", "criteria": f"={self._refused(block)}".replace("$", "")}
         sheet.conditional_format(*every, refused | {"format": style("finding")})
+
+    def share_of_reading(self, block: CellBlock, row: int) -> str:
+        """The formula of a standard uncertainty of which a share of its number is a part; of others nothing.
+
+        As issued it is what it was: what is weighed by it has the same digits.
+        """
+        inputs, of = self.report.inputs, self.report.sheet.weighed.get(block.name, "")
+        printed, number = (
+            inputs.printed(of)[row] if of else None,
+            self.grid[checked(of)].place if of else None,
+        )
+        if printed is None or number is None or number.zero or of in inputs.taken:
+            return ""
+        cell = number.cell(row, block.place.worksheet)
+        size, terms = float(block.place.scale), list[str]()
+        for error in printed.stated or ():
+            said = inputs.uncertainty.again(error.said, printed.unit, error.shape)
+            share = said.parts[0].share if said else 0.0
+            fixed, moving = error.u - share * abs(float(printed.value)), share * float(number.scale) / size
+            more = f"{fixed / size:+.15g}" if abs(fixed) > _SAME * error.u else ""
+            terms.append(f"{moving:.15g}*ABS({cell}){more}" if share else more)
+        if not any("ABS" in term for term in terms):
+            return ""
+        told = terms[0] if len(terms) == 1 else f"SQRT(SUMSQ({','.join(filter(None, terms))}))"
+        issued, u = _number(printed, number), block.values[row]
+        return f"=IF(ISNUMBER({cell}),IF({cell}={issued!r},{u!r},{told}),{u!r})"
 
     def note(self, block: CellBlock, printed: Printed | None) -> str:
         """What a cell is, what it may be, and where its number comes from, if it has one."""

@@ -75,8 +75,10 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     main = [b for b in blocks if b.kind in ("given", "computed") and b.place.row == FIRST_ROW] or list(blocks)
     style.page(sheet, f"{name}: {axis.described}")
     if name in grid.notes:
-        weighed = any(block.name in report.sheet.weighed for block in blocks)
-        stays = " but standard uncertainties, which stay as issued" * weighed
+        weighed = [block for block in blocks if block.name in report.sheet.weighed]
+        follow = [bool(inputs.share_of_reading(block, 0)) for block in weighed]
+        some = " that are no share of a reading" * any(follow)
+        stays = "" if all(follow) else f" but standard uncertainties{some}, which stay as issued"
         says = f"Type over the yellow cells; all else follows{stays}."
         style.text(sheet, 1, 0, f"{says} An empty one leaves its {axis.row} out of all sums.", "subtitle")
         given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]

@@ -225,6 +225,7 @@ SURE = {name: f'[uncertainty]\n{each}' for name, each in {
     "ME": 'M = "u = 0.02"\ne = "u = 0.01"\n',
     "xy": 'x = "u = 0.05"\ny = "u = 0.1"\n',
     "y": 'y = "u = 0.01"\n',
+    "of reading": 'x = "u = 0.05"\ny = "u = 3 % of reading; u = 0.02"\n',
 }.items()}  # fmt: skip
 VOLTS, SHARE = method(SUMS, VOLTAGES.format("48.0"), STATED, BATH), 'c = "1.20, u = 0.01"\n'
 ZERO = 'zero = "0.10 mm, u = 0.01"\n'
@@ -236,6 +237,9 @@ CASES = {
     "roots": Case(method(ROOTS, ORBITS.format("0.50"), SHARE, SURE["ME"]), "0.50", "0.90", {("M", 0): 0.9}),
     "a fit of both": Case(
         method(BOTH, POINTS.format("5.9"), "", SURE["xy"]), "0.0,5.9", "0.0,6.4", {("y", 0): 6.4}
+    ),
+    "a fit by shares of readings": Case(
+        method(BOTH, POINTS.format("5.9"), "", SURE["of reading"]), "0.0,5.9", "0.0,6.9", {("y", 0): 6.9}
     ),
     "a fit of four": Case(
         method(FOUR, DECAY.format("2.93"), "", SURE["y"]), "0.25,2.93", "0.25,2.97", {("y", 0): 2.97}
