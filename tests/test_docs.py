@@ -58,7 +58,9 @@ class Session:
                 main(words[1:])
         else:
             raise AssertionError(f"a page runs {words[0]}, which a test does not")
-        return printed.getvalue() + re.sub(r"^\w+ing \.\.\.\n", "", told.getvalue(), flags=re.MULTILINE)
+        return printed.getvalue() + re.sub(
+            r"^(\w+ing|still .*) \.\.\.\n", "", told.getvalue(), flags=re.MULTILINE
+        )
 
     def prompt(self, line: str) -> str:
         """What Python prints."""

@@ -12,7 +12,7 @@ from .findings import checks
 from .verdict import UNEXPECTED
 
 if TYPE_CHECKING:
-    from .result import Report
+    from .result import Comparison, Report
 
 NOTHING = "NOTHING TO COMPARE"
 """Said where nothing is published, so that no number was held against another."""
@@ -38,11 +38,15 @@ class Example:
         A published number has to print the same, or to be a known difference: that the printed inputs might
         yield it excuses an author, but no program that is given the author's inputs.
         """
-        strict = (
-            each if each.published.expect or each.verdict == "same" else replace(each, finding=UNEXPECTED)
-            for each in report.comparisons
+
+        def strict(each: Comparison) -> Comparison:
+            is_fine = each.published.expect or each.verdict == "same"
+            return each if is_fine else replace(each, finding=UNEXPECTED)
+
+        values, uncertainties = (
+            tuple(map(strict, every)) for every in (report.comparisons, report.comparisons_u)
         )
-        return cls(name, replace(report, comparisons=tuple(strict)))
+        return cls(name, replace(report, comparisons=values, comparisons_u=uncertainties))
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -140,7 +140,7 @@ class SecondOrder:
         return float(bends) if self._far[name].ndim > 1 and np.isfinite(bends) else 0.0
 
     def creeps(self, name: str, row: int) -> float:
-        """How far a cell is from its value a step away where that is of third order or higher; else 0."""
+        """How far a cell is from its value a step away where that is of second order or higher; else 0."""
         found = self.creeping.get(name)
         return 0.0 if found is None else float(found[row])
 
@@ -310,13 +310,14 @@ def _only_steers(sheet: Sheet, column: Column) -> bool:
 def _creeps(found: Array, value: Array) -> Array:
     """How far cells (3, rows) are at one step from their values (rows,), if they leave faster and faster.
 
-    `found`: at one, two and four steps.
+    `found`: at one, two and four steps. What eight times as much becomes of two steps is of third order or
+    higher: no first and no second derivative is told there by slopes a step to either side (infinite).
     """
     with np.errstate(all="ignore"):
         one, two, four = np.abs(np.broadcast_to(found, (3, value.size)) - value)
-        faster: NDArray[np.bool_] = (one > 0) & (two >= 3 * one) & (four >= 3 * two)
-        faster &= four > NOISE * np.abs(value)
-    return np.where(faster, one, 0.0)
+        seen: NDArray[np.bool_] = (one > 0) & (four > NOISE * np.abs(value))
+        least = np.minimum(two / one, four / two)
+    return np.where(seen & (least >= 7), np.inf, np.where(seen & (least >= 3), one, 0.0))
 
 
 def beside(values: Values, program: Program, sources: Sequence[ErrorSource], errors: Array) -> Values:
