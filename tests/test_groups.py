@@ -148,6 +148,31 @@ def test_what_rests_on_a_mean_is_counted_where_it_has_a_value(tmp_path: Path) ->
     assert (values.scalar("over"), values.scalar("over_g")) == (2, 1)
 
 
+TWO_WAYS = """\
+from loopsheet import Method, groups, mean, measured, let
+
+class Both(Method, rows="readings"):
+    "Readings of specimens in lots."
+    y = measured("mm", "reading")
+    specimen = groups("specimen")
+    lot = groups("lot")
+    a = let(mean(y, of=specimen), "mean of a specimen", "mm")
+    b = let(mean(y, of=lot), "mean of a lot", "mm")
+"""
+
+
+def test_rows_may_be_in_groups_of_two_kinds(tmp_path: Path) -> None:
+    """Their running numbers are told apart without a word."""
+    (tmp_path / "workbook.py").write_text(TWO_WAYS)
+    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n')
+    rows = "1,a,u,1.0\n2,a,v,1.2\n3,b,u,2.0\n4,b,v,2.4\n"
+    (tmp_path / "m.csv").write_text(f"reading,specimen,lot,y [mm]\n{rows}")
+    found = loopsheet.load(tmp_path)
+    assert found["a"].value.tolist() == pytest.approx([1.1, 2.2])
+    assert found["b"].value.tolist() == pytest.approx([1.5, 1.8])
+    assert main(["check", str(tmp_path)]) == 0
+
+
 OVER_GROUPS = """\
 from sympy import sqrt
 from loopsheet import Method, count, fit, groups, let, mean, measured, median, total, unknown

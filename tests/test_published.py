@@ -99,6 +99,8 @@ def test_rows_and_the_cells_that_they_name_are_told_in_one_round(tmp_path: Path,
         ),
         ("A,l,1,50.00084 ± 0.00002,mm", "a row of its own, with the cell u(l)\n"),
         ("A,u(l),1,0.00003(1),mm", "the number alone\n"),
+        ("A,l,1,< 50.1,mm", "a line is of a number: take it out; [limits] says where a cell has to lie\n"),
+        ("A,l,1,,mm", "a line is of a number: take it out; [limits] says where a cell has to lie\n"),
         ("A,l,1,5 0,mm", "write the digits without spaces"),
     ],
 )

@@ -35,6 +35,7 @@ _INDEX = re.compile(r"[1-9][0-9]{0,8}(?:-[1-9][0-9]{0,8})?")
 _EXPECT = ("", "differs")
 _ARROW = " -> "
 _CODE = re.compile(r"#[A-Z]+!")
+_BEGUN = re.compile(r"\s*[+\u2212\u2013-]?\.?[0-9]")
 
 
 @dataclass(frozen=True)
@@ -237,6 +238,8 @@ def _number(table: CsvTable, number: Field, unit: ParsedUnit, cell: str, finding
         if error.code == "LS401" and with_uncertainty(number.text):
             own = "" if "(" in cell else f"; its uncertainty is a row of its own, with the cell u({cell})"
             told["suggestion"] = f"the number alone{own}"
+        elif not _BEGUN.match(number.text):
+            told["suggestion"] = "a line is of a number: take it out; [limits] says where a cell has to lie"
         findings.add(error.code, table.at(number), name="value", **told)
     return read_printed("0", unit)  # it is refused, and its cell is looked at all the same
 

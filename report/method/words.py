@@ -451,7 +451,7 @@ def rows(name: str, *, index: str = "", size: str = "") -> Any:
     return current().further(name, index or f"k_{name}", size or f"n_{name}")
 
 
-def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", example: str = "") -> Any:
+def groups(by: str, *, rows: str = "", index: str = "", size: str = "", example: str = "") -> Any:
     """Take the rows that have one word in a column as a group: ``specimen = groups("specimen")``.
 
     With ``of=specimen`` a sum, a mean, a median, a count, the greatest or the least runs over the rows of
@@ -466,7 +466,8 @@ def groups(by: str, *, rows: str = "", index: str = "g", size: str = "groups", e
     rows : str
         What the groups are called, ``specimens``; the plural of the column, without.
     index, size : str
-        What the running number of a group is called in formulas, and how many there are.
+        What the running number of a group is called in formulas, and how many there are: ``g`` and
+        ``groups``, without, of those by further columns ``g_lot`` and ``n_lots``.
     example : str
         What `loopsheet new` writes in the column, with spaces between.
 

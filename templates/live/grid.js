@@ -227,8 +227,15 @@ function pasteScalars(element, rows, read) {
 // them, else down, into new tests. What is to be said of it: why all of it is refused, or what of it had no place.
 function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, inputs, row: called }) {
   const state = copied(page.history.now), tests = state.tables[axis], labels = tests.map(({ label }) => String(label)), lost = new Set();
-  const names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell)), first = rows.map(([text]) => read(text));
-  if (!head && rows[0].length > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text))) names.unshift("");
+  const file = Object.keys(LIVE.tables[axis].heads), first = rows.map(([text]) => read(text)), width = rows[0].length;
+  let names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell));
+  if (!head && width > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text))) {
+    // Rows as they stand in the file, or numbers of rows before what stands here.
+    names = width === file.length ? file.map((name) => (name === "test" ? "" : name)) : ["", ...names];
+  } else if (!head) {
+    const there = file.filter((name) => LIVE.columns[name] || /^u\(/.test(name)), at = there.indexOf(cell);
+    if (names.slice(0, width).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
+  }
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
   if (why) return `Nothing was pasted: ${why}.`;
   const at = names.indexOf("");
