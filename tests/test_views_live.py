@@ -511,8 +511,11 @@ def test_an_uncertainty_in_parentheses_is_saved_so_that_an_edit_does_not_move_it
     saved = live_files.given(Study(tmp_path).computed)["toml"]
     assert {piece["parameter"] for piece in saved if "line" in piece} >= {"beta", "points_per_pair"}
     # what has a line of its own is a default: the page writes none that nobody edited
-    written = (piece if isinstance(piece, str) else "" if "line" in piece else "8.40" for piece in saved)
-    (tmp_path / "report.toml").write_text(toml := "".join(written))
+    edited = (
+        each if isinstance(each, str) else "" if "line" in each else each.get("behind", "8.40")
+        for each in saved
+    )  # fmt: skip
+    (tmp_path / "report.toml").write_text(toml := "".join(edited))
     assert 'ball_mass = "8.40 g, u = 0.004"  # (as weighed)\n' in toml
     again = Study(tmp_path).inputs.parameters["ball_mass"]
     assert (again.text, again.u) == ("8.40", pytest.approx(4e-6))

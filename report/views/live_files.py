@@ -171,7 +171,8 @@ def _toml(report: Report, renamed: Mapping[str, str]) -> Iterator[str | dict[str
             pieces.append((place, end, {"parameter": name}))
             # In parentheses it counts units of the last digit, which an edit may move.
             if concise := re.match(r"\([0-9]+\)(?P<behind>[^\"'\n]*)", text[end:]):
-                pieces.append((end, end + concise.end(), concise["behind"] + _stated(number)))
+                now = {"parameter": name, "was": concise[0], "behind": concise["behind"] + _stated(number)}
+                pieces.append((end, end + concise.end(), now))
     for where, written, name in report.inputs.named:
         if renamed[name] != name:
             line, column = map(int, where.split(":")[1:])

@@ -94,8 +94,9 @@ function reportToml(state) {
     if (piece.file) return piece.file;
     if (piece.taken) return own.includes(piece.taken) ? "# " : "";
     const text = JSON.stringify(state.parameters[piece.parameter]).slice(1, -1);
-    if (!piece.line) return text;
     const same = state.parameters[piece.parameter] === page.history.issued.parameters[piece.parameter];
+    if (piece.was) return same ? piece.was : piece.behind;
+    if (!piece.line) return text;
     return same ? "" : `${piece.line} = "${text}${piece.behind}"\n`;
   }).join("");
 }

@@ -244,3 +244,24 @@ def test_an_edited_default_keeps_what_is_stated_of_it(open_page: Open, tmp_path:
     assert [given[name].u for name in ("T_0", "c", "m")] == pytest.approx([0.05, 4.5, 0])
     assert report.inputs.printed("T")[0] is None
     assert driving.differences(live.cells(), report.values) == []
+
+
+@pytest.mark.parametrize(
+    ("edited", "saved"), [("T_0", "2.500(40) kg"), ("m", "2.51 kg, u = 0.04")], ids=["another", "itself"]
+)
+def test_what_was_not_edited_stands_as_it_stood(
+    open_page: Open, tmp_path: Path, edited: str, saved: str
+) -> None:
+    """What stands in parentheses counts units of the last digit: it is written out where that was edited."""
+    folder = tmp_path / "own"
+    folder.mkdir()
+    (folder / "workbook.py").write_text(DEFAULTS, encoding="utf-8")
+    (folder / "measurements.csv").write_text("T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n", encoding="utf-8")
+    toml = 'workbook = "workbook.py"\n[parameters]\nm = "2.500(40) kg"\n'
+    (folder / "report.toml").write_text(
+        f'{toml}[measurements]\nfile = "measurements.csv"\n', encoding="utf-8"
+    )
+    live = open_page(page_of(folder, tmp_path / "out"))
+    live.type(edited, "", {"T_0": "290.2", "m": "2.51"}[edited])
+    text = (live.save(tmp_path / "saved", "workbook.py") / "report.toml").read_text(encoding="utf-8")
+    assert tomllib.loads(text)["parameters"]["m"] == saved
