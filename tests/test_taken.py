@@ -183,6 +183,11 @@ def test_a_row_of_a_budget_says_of_which_taken_number_it_tells(apart: Path) -> N
         assert told.split()[0] == report.stated(name, value, u)[0].text.split()[0]
 
 
+def begun(spread: Spread) -> set[str]:
+    """Where errors of other reports begin, as they are named."""
+    return {source.name.partition(" (")[2] for source in spread.sources if source.origin}
+
+
 def test_what_two_reports_share_with_a_third_is_still_one(apart: Path, tmp_path: Path) -> None:
     build(apart)
     last = """
@@ -202,6 +207,14 @@ HEADLINE = ["one"]
     assert spread.covariance([("one", 0)])[0, 0] < 1e-28
     # d, reading, gain and air: each is one, by whatever way it came
     assert len([source for source in spread.sources if source.origin]) == 4
+    assert begun(spread) == {"density/ball/out/values.json)"}
+    alone = tmp_path / "alone"
+    one = 'rho = given("rho", "kg/m^3")\none = computed("one", "kg/m^3", rho)\nHEADLINE = ["one"]\n'
+    folder(alone, one, {"rho": '{ from = "density/out/values.json", cell = "rho" }'})
+    (alone / "density/out").mkdir(parents=True)
+    (alone / "density/out/values.json").write_bytes((tmp_path / "density/out/values.json").read_bytes())
+    _, spread = budget(alone, "one")
+    assert begun(spread) == {"through density/out/values.json)"}
 
 
 def test_the_manifest_names_what_was_taken(apart: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -84,6 +84,8 @@ class Taken:
     """Whether they may be others than those that are meant, though they have their numbers."""
     doubts: tuple[str, ...] = ()
     """Why their uncertainties may not hold there, each with its cell."""
+    made_from: str = ""
+    """The sha256 of what that report was made from: the errors that begin there have it."""
 
     def of(self, rows: Iterable[int]) -> Taken:
         """The same of some rows."""
@@ -171,7 +173,9 @@ def read_taken(
     printed, errors = zip(*(numbers[rows[test]] for test in tests or (0,)), strict=True)
     gone = reader.spare({test: rows.get(test, ()) for test in spare}, where)
     doubts = tuple(reader.doubts([rows[test] for test in tests or (0,)]))
-    return Taken(file, cell, printed, errors, reader.correlations, gone, reader.told, reader.doubtful, doubts)
+    own = reader.influences.inputs if reader.influences else ""
+    told = reader.told, reader.doubtful, doubts, own
+    return Taken(file, cell, printed, errors, reader.correlations, gone, *told)
 
 
 def open_result(data: bytes, file: Path, name: str, at: Location, findings: Findings) -> Result | None:

@@ -72,7 +72,10 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
 
 
 def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
-    """The errors of other reports: one that two numbers share moves both."""
+    """The errors of other reports: one that two numbers share moves both.
+
+    Each is named by the report where it begins; by one that it came through, if nothing is taken from that.
+    """
     every = [(name, taken) for name, taken in inputs.taken.items() if name in values.sheet]
     moves: dict[Origin, list[tuple[str, int, float]]] = {}
     first: dict[Origin, tuple[Taken, TakenError]] = {}
@@ -80,10 +83,12 @@ def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         for row, each in ((row, each) for row, errors in enumerate(taken.errors) for each in errors):
             moves.setdefault(each.origin, []).append((name, row, each.moved))
             first.setdefault(each.origin, (taken, each))
-    names = Counter((origin[1], taken.file) for origin, (taken, _) in first.items())
-    for origin, (taken, each) in first.items():
-        more = f", {origin[0][:8]}" if names[origin[1], taken.file] > 1 else ""
-        told, error = f"{origin[1]} ({taken.file}{more})", each.error
+    files = {taken.made_from: taken.file for _, taken in every}
+    begun = {origin: files.get(origin[0], f"through {taken.file}") for origin, (taken, _) in first.items()}
+    names = Counter((origin[1], file) for origin, file in begun.items())
+    for origin, (_, each) in first.items():
+        more = f", {origin[0][:8]}" if names[origin[1], begun[origin]] > 1 else ""
+        told, error = f"{origin[1]} ({begun[origin]}{more})", each.error
         yield ErrorSource(
             told, error.shape, error.dof, tuple(moves[origin]), "taken", error.sample, error.law, origin
         )

@@ -79,11 +79,14 @@ def _needed(plan: Planned) -> str:
     assert needed is not None
     cell = plan.budget.cell
     unit = behind(report.shown[plan.budget.name].unit)
-    wanted = f"u({cell}) = {report.sure(plan.budget.name, needed.wanted).text}{unit}"
+    asked = report.sure(plan.budget.name, needed.wanted).text
+    wanted = f"u({cell}) = {asked}{unit}"
     if needed.is_out_of_reach:
         if math.isinf(needed.others):
             return f"no u({needed.of}) gives {wanted}: {cell} has no uncertainty"
         others = report.sure(plan.budget.name, needed.others).text
+        if others == asked:  # by digits that are not shown
+            others = rounded(needed.others / report.shown[plan.budget.name].scale, 4).text
         return f"no u({needed.of}) is small enough for {wanted}: without it the others alone make {others}"
     if math.isinf(needed.u):
         return f"any u({needed.of}) is small enough for {wanted}"
