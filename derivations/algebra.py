@@ -217,6 +217,7 @@ _FAMILIES = (
     ((sp.erfc, sp.erfi), sp.erf),
     ((sp.asinh, sp.acosh, sp.atanh, sp.acoth), sp.log),
     ((sp.sinh, sp.cosh, sp.tanh, sp.coth, sp.sech, sp.csch), sp.exp),
+    ((sp.Max, sp.Min), sp.Abs),
 )
 """Functions that are another one in disguise, by their definitions."""
 

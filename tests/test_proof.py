@@ -172,6 +172,9 @@ def test_extremes_of_opposites() -> None:
         (tanh(a), sinh(a) / cosh(a), cosh(a) / sinh(a)),
         (gamma(a + 1), a * gamma(a), gamma(a)),
         (erf(a) + erfc(a), Integer(1), erf(a)),
+        (Max(a, b) * Min(a, b), a * b, Max(a, b) ** 2),
+        (Max(a - b, 0) - Max(b - a, 0), a - b, Abs(a - b)),
+        (Max(a, b), (a + b + Abs(a - b)) / 2, (a + b - Abs(a - b)) / 2),
         (sinh(asinh(a) + log(b)), (b * (a + sqrt(a**2 + 1)) - 1 / (b * (a + sqrt(a**2 + 1)))) / 2, a * b),
     ],
 )
