@@ -302,6 +302,7 @@ def test_a_word_that_is_the_number_of_another_group_is_none(
         ("reading = groups('reading')", "rows already"),
         ("again = groups('instrument')", "rows already"),
         ("two = groups('a word')", "needs names"),
+        ("two = groups('word', index='k')", "k counts other rows already: say index='...' and size='...'"),
         (
             "g = given('m/s^2', 'free fall')",
             "g is the instrument's number: call that otherwise, index='...' in groups()",

@@ -223,6 +223,27 @@ def test_a_row_that_stands_there_twice_is_told(made: Made, rows: str, told: str)
         assert again.message.endswith("as is expected")
 
 
+def test_readings_that_were_taken_together_are_looked_for_together(tmp_path: Path, made: Made) -> None:
+    """A correlation, too, is that of digits that are not printed."""
+    rng = np.random.default_rng(3)
+    voltage = 5 + 0.004 * rng.standard_normal(5)
+    current = 19.66 + 0.6 * (voltage - 5) + 0.003 * rng.standard_normal(5)
+    table = "".join(
+        f"{n},{v:.3f},{i:.3f},1.04\n" for n, (v, i) in enumerate(zip(voltage, current, strict=True), 1)
+    )
+    head = "reading,V [V],I [mA],phi [rad]\n"
+    said = 'paired = ["V", "I"]\nphi = "exact"\n[published]\nfile = "published.csv"\n'
+    folder = made(said, measurements=head + table)
+    published = 'source,cell,index,value,unit\nT,"r(V_mean, I_mean)",,{:.4f},1\n'
+    hidden = correlation(voltage, current)
+    (folder / "published.csv").write_text(published.format(hidden))
+    (one,) = Study(folder).refereed.comparisons_u
+    assert (one.verdict, one.word) == ("differs", "reachable")
+    (folder / "published.csv").write_text(published.format(-hidden))
+    (one,) = Study(folder).refereed.comparisons_u
+    assert one.word == "differs"
+
+
 PERIODS = """\
 from sympy import pi
 from loopsheet import Method, given, let, mean, measured

@@ -490,3 +490,42 @@ def test_a_report_without_anything_to_draw_or_to_compare(report: Report) -> None
     content = xlsx.render(replace(report, comparisons=()), plain)
     names = openpyxl.load_workbook(io.BytesIO(content)).sheetnames
     assert names == ["report", "tests", "pairs", "points", "steps", "uncertainty", "equations"]
+
+
+LINE = """\
+from loopsheet import Method, fit, measured, unknown
+
+
+class Line(Method):
+    x = measured("mm", "abscissa")
+    y = measured("V", "ordinate", positive=True)
+    a = unknown("a", "V")
+    b = unknown("b", "V/mm")
+    line = fit(y, a + b * x, u={y: "stated"})
+"""
+
+
+@pytest.mark.parametrize(
+    ("stated", "follows"),
+    [
+        ("u = 3 % of reading", "0.03*ABS("),
+        ("u = 3 % of reading; u = 0.02", "SQRT(SUMSQ(0.03*ABS("),
+        ("u = 0.02", ""),
+        ("u = 60 % of reading, min = 0; u = 5 % of reading", ""),  # where it is cut off it is another one
+    ],
+)
+def test_what_rows_are_weighed_by_follows_them_where_it_is_a_share(
+    tmp_path: Path, stated: str, follows: str
+) -> None:
+    (tmp_path / "workbook.py").write_text(LINE)
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
+    (tmp_path / "report.toml").write_text(f'{toml}x = "exact"\ny = "{stated}"\n')
+    (tmp_path / "m.csv").write_text("reading,x [mm],y [V]\n1,1,\n2,2,2.1\n3,3,2.9\n4,4,4.2\n5,5,4.9\n")
+    report = Study(tmp_path).computed
+    made = openpyxl.load_workbook(io.BytesIO(xlsx.render(report, grid_of(report))))
+    (sheet,) = (each for each in made if each.title == "readings")
+    heads = next(texts for row in sheet.iter_rows() if "u_y [V]" in (texts := [str(c.value) for c in row]))
+    column = heads.index("u_y [V]")
+    cells = [str(row[column].value) for row in sheet.iter_rows(min_row=9, max_row=12)]
+    assert all((follows in each and each[0] == "=") if follows else each[0] != "=" for each in cells)
+    assert ("stay as issued" in str(sheet["A2"].value)) != bool(follows)

@@ -31,7 +31,7 @@ from .expected import NO_WORDS, OfCell, Words, check_expected
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
-from .stated import LARGEST, LEVELS, StatementError
+from .stated import LARGEST, LEVELS, PERCENT, StatementError
 
 if TYPE_CHECKING:
     from ..messages.errors import Findings, Location
@@ -45,6 +45,7 @@ _AROUND = re.compile(r"(?P<nominal>.+?)\s*(?:±|\+-|\+/-)\s*(?P<tolerance>.+)")
 _ONE = re.compile(r"(?P<sign><=|>=|≤|≥)\s*(?P<number>.+)")
 _OWN = re.compile(r",\s*(?P<key>[A-Za-z]\w*)\s*=\s*(?P<text>.*?)\s*(?=,\s*[A-Za-z]\w*\s*=|$)")
 """Behind limits, a part of a rule; a comma that no key follows belongs to what is before it."""
+_SHARES = (*PERCENT, "ppm")
 _SHARE = re.compile(r"(?:(?P<times>[0-9.]+)\s*)?U")
 
 
@@ -168,14 +169,15 @@ def _ends(text: str) -> tuple[Printed | None, Printed | None]:
 def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
     """The ends of a nominal value and its tolerance, in the unit of the nominal value."""
     tolerance = _width(text["tolerance"], text.start("tolerance"), "LS441")
-    is_share = tolerance.unit == "%"
+    is_share = tolerance.unit in _SHARES
     unit = "" if " " in text["nominal"] or is_share else tolerance.unit  # a unit behind both is that of both
     nominal = _number(f"{text['nominal']} {unit}".strip(), 0, "LS441")
-    if is_share and nominal.number == 0:  # of which no share is meant
-        nominal = replace(nominal, unit="%", scale=tolerance.scale) if nominal.unit == "1" else nominal
-        is_share = nominal.unit != "%"
+    is_pure_one = is_pure(nominal.unit) or nominal.unit in _SHARES
+    if is_share and is_pure_one and nominal.number == 0:  # of which no share is meant
+        nominal = replace(nominal, unit=tolerance.unit, scale=tolerance.scale)
+    is_share &= not (is_pure_one and (nominal.number == 0 or nominal.unit == tolerance.unit == "ppm"))
     known = parse_open(nominal.unit)
-    if is_share and nominal.unit in ("1", "%"):
+    if is_share and is_pure_one:
         raise StatementError("LS441", text[0], 0, _either(nominal, tolerance))
     if is_share and known.zero:
         said = f"zero {nominal.unit} is not nothing, of which there is a share: say how much, in K"

@@ -13,6 +13,7 @@ from ...derivations.unit_text import is_pure, parse_unit
 from ..messages.errors import Findings, Location, listing, suggest
 from ..quantity import Printed, there
 from .number_text import read_unit_of, read_value
+from .readings import correlations_of
 from .stated import Of, StatementError, read_statement, split
 from .taken import alone
 
@@ -180,8 +181,10 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
     )
 
 
-def with_numbers(inputs: Inputs, numbers: Mapping[str, Sequence[float]]) -> Inputs:
+def otherwise(inputs: Inputs, numbers: Mapping[str, Sequence[float]]) -> Inputs:
     """Inputs as they would be if some numbers were others than they are printed, all else being the same.
+
+    How readings scatter, alone or together, follows; what the text of a number says of its error stays.
 
     `numbers`: in SI, by column or parameter; of what is not there nothing is asked.
     """
@@ -192,17 +195,15 @@ def with_numbers(inputs: Inputs, numbers: Mapping[str, Sequence[float]]) -> Inpu
 
     measured = {name: of(name, column) for name, column in inputs.measured.items()}
     parameters = {name: of(name, (printed,)) for name, printed in inputs.parameters.items()}
+    own = inputs.uncertainty
     columns = {
         name: each.of_others(there(measured[name])) if name in measured else each
-        for name, each in inputs.uncertainty.columns.items()
+        for name, each in own.columns.items()
     }
-    stated = replace(inputs.uncertainty, columns=columns)
-    said = stated.of(measured)
-    tables = (
-        replace(table, measured={name: said[name] for name in table.measured}) for table in inputs.tables
-    )
+    together = correlations_of({name: there(measured[name]) for name in own.paired})
+    stated = replace(own, columns=columns, correlations={**own.correlations, **together})
     every = {name: printed for name, (printed,) in stated.of(parameters).items() if printed}
-    return replace(inputs, tables=tuple(tables), parameters=every, uncertainty=stated)
+    return replace(inputs.with_numbers(stated.of(measured)), parameters=every, uncertainty=stated)
 
 
 def _again(group: tuple[int, ...], inputs: Inputs, like: Sequence[int]) -> tuple[int, ...]:

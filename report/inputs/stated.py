@@ -186,8 +186,8 @@ class StatedErrors:
 
     def of_others(self, numbers: Sequence[Printed]) -> StatedErrors:
         """The same of other numbers: readings scatter as these do."""
-        parts = (_scatter(numbers, 0) if part.said == SCATTER else part for part in self.parts)
-        return StatedErrors(tuple(parts))
+        parts = [_scatter(numbers, 0) if part.said == SCATTER else part for part in self.parts]
+        return StatedErrors(_or_digits(parts))
 
 
 _NOTHING = Of()
@@ -227,9 +227,14 @@ def read_statement(text: str, unit: ParsedUnit, bare: Shape | None = None, of: O
         if why := next(filter(None, map(read.why_not, of.numbers)), ""):
             raise StatementError("LS431", part, start, why)
         parts.append(read)
+    return StatedErrors(_or_digits(parts))
+
+
+def _or_digits(parts: Sequence[_Part]) -> tuple[_Part, ...]:
+    """The errors of a number; of readings that are all the same what digits leave, where nothing else is."""
     if [part.said for part in parts] == [SCATTER] and not parts[0].absolute:
-        parts = [replace(parts[0], digits=Fraction(1, 2), shape=Shape.RECTANGULAR, dof=inf)]
-    return StatedErrors(tuple(parts))
+        return (replace(parts[0], digits=Fraction(1, 2), shape=Shape.RECTANGULAR, dof=inf),)
+    return tuple(parts)
 
 
 def _scatter(readings: Sequence[Printed], start: int) -> _Part:

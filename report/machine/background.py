@@ -9,7 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, Generic, TypeVar
+from typing import IO, Any, Generic, TypeVar
 
 from .memory import ample
 from .stopping import unstoppable, worker
@@ -90,11 +90,8 @@ class Background(Generic[T]):
         if self._process is None or self._process.stdout is None:
             function, arguments = self._call
             return function(*_heard(arguments, step))
-        try:
-            while isinstance(told := pickle.load(self._process.stdout), str):
-                step(told)
-        except (EOFError, pickle.UnpicklingError):
-            told = None
+        while isinstance(told := _loaded(self._process.stdout), str):
+            step(told)
         code = self._process.wait()
         self._close()
         if told is None:
@@ -124,6 +121,14 @@ class Background(Generic[T]):
             if pipe is not None:
                 with suppress(BrokenPipeError):
                     pipe.close()
+
+
+def _loaded(pipe: IO[bytes]) -> Any:
+    """What was told next; None where nothing, or not all of it, comes any more."""
+    try:
+        return pickle.load(pipe)
+    except (EOFError, pickle.UnpicklingError):
+        return None
 
 
 def _heard(arguments: tuple[Any, ...], hear: Callable[[str], None]) -> tuple[Any, ...]:

@@ -179,6 +179,9 @@ class MethodBody(dict[str, Any]):
         """The groups of the rows that have one word in a column."""
         index = index or (f"g_{by}" if self.groups else "g")
         size = size or (f"n_{name}" if self.groups else "groups")
+        if again := {index, size} & {each for one in self.axes for each in (one.index_name, one.size_name)}:
+            said = "counts other rows already: say index='...' and size='...' in groups()"
+            raise SheetError(f"{listing(sorted(again))} {said}", by)
         if len({index, size}) < 2 or not all(each.isidentifier() for each in (by, name, index, size)):
             raise SheetError(f"groups('{by}') needs names: letters, digits and _ make a name", by)
         if by in (self.axis.row, self.axis.name) or name in [axis.name for axis in self.axes]:

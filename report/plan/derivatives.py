@@ -335,13 +335,13 @@ def _of_product(product: sp.Expr) -> sp.Expr:
     """A product: a sign rounds nothing, and a quotient is rounded once."""
     factors = [factor for factor in product.args if factor != -1]
     found = _size(product) if len(factors) > 1 else sp.Integer(0)
-    for factor in factors:
+    for n, factor in enumerate(product.args):
         inside = rounding(factor)
         if isinstance(factor, sp.Pow) and factor.exp == -1 and len(factors) > 1:
             inside = _size(factor) ** 2 * rounding(factor.base)
         if inside != 0:
             # Without the factor, not by it: what is chosen by cases may be zero.
-            found += _size(sp.Mul(*(each for each in product.args if each is not factor))) * inside
+            found += _size(sp.Mul(*product.args[:n], *product.args[n + 1 :])) * inside
     return found
 
 

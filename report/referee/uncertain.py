@@ -1,7 +1,7 @@
 """Published uncertainties beside the computed ones, in the digits that were printed.
 
-How readings scatter hangs on digits that are not printed: a standard deviation that differs is looked for
-among the numbers that print as given, along the slopes from those that are printed.
+How readings scatter, and what slopes are, hangs on digits that are not printed: what differs is looked for
+among the numbers that print as given, each by itself, along the slopes from those that are printed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..cells.marks import Marks
 from ..cells.values import Cell, Status, Values
 from ..inputs.about import About
 from ..inputs.inputs import Inputs
-from ..inputs.planned import with_numbers
+from ..inputs.planned import otherwise
 from ..result.result import Comparison
 from ..result.verdict import REACHABLE, Verdict
 from ..sheet import Column, Sheet
@@ -97,13 +97,14 @@ class _Asked:
     ) -> Verdict | None:
         """What numbers that print as given yield, if one of them is what was published; else None."""
         about, sheet = published.about, self.values.sheet
-        assert about is not None
+        if about is None or about.kind in ("low", "high"):
+            return None  # draws
         columns = [sheet[name] for name in (about.cell, about.other) if name]
         above = {each.name for column in columns for each in (column, *sheet.ancestors(column))}
         part = Sheet(tuple(column for column in sheet.columns if column.name in above))
         unknowns = list(Campaign(sheet, self.inputs, self.values, {}).unknowns(part, ()))
-        if about.kind in ("low", "high") or len(unknowns) > MOST_MOVED:
-            return None  # draws, and what takes too long
+        if len(unknowns) > MOST_MOVED:
+            return None
         compute, like = computing(columns), list[Spread]()
         start = np.array([unknown.start for unknown in unknowns])
         low, high = np.array([unknown.interval() for unknown in unknowns]).reshape(-1, 2).T
@@ -116,7 +117,7 @@ class _Asked:
                 numbers.setdefault(
                     unknown.column, np.broadcast_to(every, len(self.values.labels(column))).tolist()
                 )[unknown.row] = value
-            inputs = with_numbers(self.inputs, numbers)
+            inputs = otherwise(self.inputs, numbers)
             asked = _Asked(inputs, compute(inputs).values, self.step, *like)
             like[:] = [asked.spread]
             return asked.number(about, published.index, 0.0)

@@ -40,8 +40,8 @@ class Example:
         """
 
         def strict(each: Comparison) -> Comparison:
-            is_fine = each.published.expect or each.verdict == "same"
-            return each if is_fine else replace(each, finding=UNEXPECTED)
+            is_wrong = each.verdict == "differs" and not each.published.expect
+            return replace(each, finding=UNEXPECTED) if is_wrong else each
 
         values, uncertainties = (
             tuple(map(strict, every)) for every in (report.comparisons, report.comparisons_u)

@@ -243,7 +243,7 @@ class Spread:
         return first, np.where(little, 0.0 * second, second)
 
     def _creeping(self, cells: Sequence[tuple[str, int]]) -> Array:
-        """How far cells are from their values a step away, if by terms of third order or higher alone."""
+        """How far cells are from their values a step away, if by terms of second order or higher alone."""
         return np.array([self.second.creeps(*cell) if self.second else 0.0 for cell in cells])
 
     def _hidden(self, cells: Sequence[tuple[str, int]]) -> NDArray[np.bool_]:
@@ -273,8 +273,9 @@ class Spread:
         u = math.sqrt(first + second) if math.isfinite(first + second) else math.nan
         if math.isnan(u):
             why = "a derivative has no value here"
-            if self._hidden(cell)[0] and not np.any(found):
-                why = unlooked or "its first and second derivatives are 0 here"
+            if self._hidden(cell)[0]:
+                flat = "its first and second derivatives are 0 here"
+                why = unlooked or ("terms of higher order make most of it" if np.any(found) else flat)
             own_address = self.values.address(name, row)
             return Budget(own_address, name, label, value, level=level, unlooked=why)
         shares = own / u * (with_correlated(own, self._pairs) / u) if u > 0 else np.zeros(len(own))

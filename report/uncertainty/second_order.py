@@ -140,7 +140,10 @@ class SecondOrder:
         return float(bends) if self._far[name].ndim > 1 and np.isfinite(bends) else 0.0
 
     def creeps(self, name: str, row: int) -> float:
-        """How far a cell is from its value a step away where that is of second order or higher; else 0."""
+        """How far a cell is from its value a step away by terms of second order or higher; else 0.
+
+        Infinite where none of second order are seen, but higher ones.
+        """
         found = self.creeping.get(name)
         return 0.0 if found is None else float(found[row])
 

@@ -170,6 +170,8 @@ class Progress:
     def __exit__(self, *_: object) -> None:
         """Clear the moving line."""
         self._ended.set()
+        if self._beside.is_alive():
+            self._beside.join()
         if self.stream.isatty() and self.shown:
             self.stream.write("\r" + " " * len(self.shown) + "\r")
             self.stream.flush()
