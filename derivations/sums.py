@@ -21,9 +21,23 @@ def in_terms(expression: Any) -> Any:
     if isinstance(expression, sp.Sum):
         *inner, limits = expression.limits
         body = in_terms(sp.Sum(expression.function, *inner) if inner else expression.function)
-        body = sp.expand(sp.expand_log(sp.expand_power_base(body)))
-        return sp.Add(*(_of_term(term, *limits) for term in sp.Add.make_args(body)))
+        held: dict[sp.Expr, sp.Dummy] = {}
+        body = sp.expand(sp.expand_log(sp.expand_power_base(_without_sums(body, limits[0], held))))
+        terms = sp.Add(*(_of_term(term, *limits) for term in sp.Add.make_args(body)))
+        return terms.xreplace({dummy: part for part, dummy in held.items()})
     return expression.func(*(in_terms(argument) for argument in expression.args))
+
+
+def _without_sums(body: Any, index: sp.Symbol, held: dict[sp.Expr, sp.Dummy]) -> Any:
+    """A body whose parts with sums that do not run with the index are symbols: else they are multiplied out.
+
+    `held`: what each of these is, to be put in again.
+    """
+    if not body.has(sp.Sum) or isinstance(body, sp.Sum):
+        return body
+    if not body.has(index):
+        return held.setdefault(body, sp.Dummy())
+    return body.func(*(_without_sums(part, index, held) for part in body.args))
 
 
 def _of_term(term: sp.Expr, index: sp.Symbol, low: sp.Expr, high: sp.Expr) -> sp.Expr:

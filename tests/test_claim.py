@@ -128,6 +128,28 @@ def test_what_follows_from_normal_equations_follows_of_any_columns(right: str) -
         assert {f"normal equation of the {each}" for each in "ABC"} <= set(found.rests_on)
 
 
+WEIGHED = """
+from loopsheet import *
+
+class Weighed(Method):
+    x = measured("mm", "abscissa")
+    y = measured("V", "ordinate")
+    w = measured("V", "standard uncertainty", positive=True, exact=True)
+    a = unknown("offset", "V")
+    b = unknown("slope", "V/mm")
+    line = fit(y, a + b * x, u=w)
+    claim(sum(line.residual{} / w**2), 0, "nothing is left by weight")
+"""
+
+
+@pytest.mark.parametrize("more", ["", " * x", " * y"])
+def test_what_is_left_by_weight_is_proved_of_stated_weights(more: str) -> None:
+    scope: dict[str, object] = {}
+    exec(WEIGHED.format(more), scope)
+    found = prove(scope["Weighed"].workbook.ledger())[-1]  # type: ignore[attr-defined]
+    assert found.status is (ProofStatus.REFUTED if "y" in more else ProofStatus.PROVED)
+
+
 def folder(path: Path, line: str) -> Path:
     code = f'{WORDS}\n\nclass Claimed(Method):\n    """Claims."""\n\n{BODY}    {line}\n'
     (path / "workbook.py").write_text(code, encoding="utf-8")
