@@ -213,6 +213,8 @@ def _powers(expression: sp.Expr) -> sp.Expr:
     return expression.replace(sp.exp, product)
 
 
+_MOST_WRITTEN = 6
+"""Arguments: the greatest of more takes as many distances as there are ways to order them."""
 _FAMILIES = (
     ((sp.erfc, sp.erfi), sp.erf),
     ((sp.asinh, sp.acosh, sp.atanh, sp.acoth), sp.log),
@@ -225,7 +227,8 @@ _FAMILIES = (
 def _undisguised(expression: Any) -> Any:
     """Write functions of a family by the one that defines them."""
     for disguised, plain in _FAMILIES:
-        expression = expression.rewrite(disguised, plain)
+        if all(len(each.args) <= _MOST_WRITTEN for each in expression.atoms(*disguised)):
+            expression = expression.rewrite(disguised, plain)
     return expression
 
 

@@ -21,22 +21,37 @@ def in_terms(expression: Any) -> Any:
     if isinstance(expression, sp.Sum):
         *inner, limits = expression.limits
         body = in_terms(sp.Sum(expression.function, *inner) if inner else expression.function)
-        held: dict[sp.Expr, sp.Dummy] = {}
+        held: dict[sp.Expr, _Held] = {}
         body = sp.expand(sp.expand_log(sp.expand_power_base(_without_sums(body, limits[0], held))))
         terms = sp.Add(*(_of_term(term, *limits) for term in sp.Add.make_args(body)))
         return terms.xreplace({dummy: part for part, dummy in held.items()})
     return expression.func(*(in_terms(argument) for argument in expression.args))
 
 
-def _without_sums(body: Any, index: sp.Symbol, held: dict[sp.Expr, sp.Dummy]) -> Any:
-    """A body whose parts with sums that do not run with the index are symbols: else they are multiplied out.
+class _Held(sp.Dummy):  # type: ignore[misc]
+    """What stands for a part of a body that has sums, but does not run with the index of its own."""
+
+    depth: int
+    """How deep sums are nested in it."""
+
+
+def _without_sums(body: Any, index: sp.Symbol, held: dict[sp.Expr, _Held]) -> Any:
+    """A body with symbols for quotients and functions of sums that do not run with the index.
+
+    They would be multiplied out with what does run, and then stand in no common place.
 
     `held`: what each of these is, to be put in again.
     """
     if not body.has(sp.Sum) or isinstance(body, sp.Sum):
         return body
-    if not body.has(index):
-        return held.setdefault(body, sp.Dummy())
+    whole_power = isinstance(body, sp.Pow) and body.exp.is_Integer and body.exp.is_positive
+    is_expanded = isinstance(body, (sp.Add, sp.Mul)) or whole_power
+    if isinstance(body, sp.Expr) and not is_expanded and not body.has(index):
+        part = sp.expand(body)
+        if part not in held:
+            held[part] = _Held(real=part.is_real, positive=part.is_positive)
+            held[part].depth = _depth(part)
+        return held[part]
     return body.func(*(_without_sums(part, index, held) for part in body.args))
 
 
@@ -88,4 +103,5 @@ def _named(body: sp.Expr, index: sp.Symbol, low: sp.Expr, high: sp.Expr) -> sp.S
 
 
 def _depth(expression: sp.Basic) -> int:
-    return max((1 + _depth(total.function) for total in expression.atoms(sp.Sum)), default=0)
+    nested = [1 + _depth(total.function) for total in expression.atoms(sp.Sum)]
+    return max([*nested, *(part.depth for part in expression.atoms(_Held))], default=0)

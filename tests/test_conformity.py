@@ -404,6 +404,10 @@ def test_what_is_understood(tmp_path: Path, text: str, said: str) -> None:
         ("25 % +- 10 %", "write the limits: 22.5 .. 27.5 % or 15 .. 35 %"),
         ("25 % +- 10 percent", "write the limits: 22.5 .. 27.5 % or 15 .. 35 %"),
         ("1.30 +- 5 percent", "write the limits: 1.235 .. 1.365 or 1.25 .. 1.35"),
+        (
+            "250 +- 10 ppm",
+            "write the limits: 249.9975 .. 250.0025 or 249.99999 .. 250.00001 or 240 .. 260 ppm",
+        ),
         ("500 ppm +- 2 %", "write the limits: 490 .. 510 ppm or -19500 .. 20500 ppm"),
         ("76.01 degF +- 2 %", "zero degF is not nothing, of which there is a share: say how much, in K"),
         ("26,38 .. 26,50 kJ/g", "a decimal comma? write 26.50"),

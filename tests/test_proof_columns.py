@@ -2,9 +2,10 @@
 
 import pytest
 from proving import X, a, b, claim, decide, given, n, q
-from sympy import Eq, Expr, IndexedBase, Piecewise, Sum, Symbol
+from sympy import Eq, Expr, IndexedBase, Piecewise, Sum, Symbol, exp, log
 
 from loopsheet.derivations.proved import ProofStatus
+from loopsheet.derivations.sums import in_terms
 
 Y = IndexedBase(Symbol("Y", real=True))
 Z = IndexedBase(Symbol("Z", positive=True))
@@ -107,3 +108,37 @@ def test_rows_that_do_not_exist_prove_nothing(left: Expr, right: Expr) -> None:
     found = decide(claim(left, right))
     assert found.status is ProofStatus.UNDECIDED
     assert "has several indices, and one of them runs" in found.why or "has no value at" in found.why
+
+
+# --- sums in one form ---------------------------------------------------------------------------------------
+
+ROW, INNER, SIZE, PART = (Symbol(name, integer=True, positive=True) for name in ("j", "i", "n", "m"))
+A_X, A_Y = (IndexedBase(Symbol(name, real=True)) for name in "xy")
+WHOLE = Sum(A_X[INNER], (INNER, 1, SIZE))
+"""Of a column, by itself."""
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "unlike"),
+    [
+        (1 / ((WHOLE + 1) * A_Y[ROW] + 1), 1 / (WHOLE * A_Y[ROW] + A_Y[ROW] + 1), 1 / (WHOLE * A_Y[ROW] + 1)),
+        (exp((WHOLE + 1) * A_Y[ROW]), exp(WHOLE * A_Y[ROW]) * exp(A_Y[ROW]), exp(WHOLE * A_Y[ROW])),
+        (
+            log((A_X[ROW] - WHOLE / SIZE) ** 2 + 1),
+            log(A_X[ROW] ** 2 - 2 * A_X[ROW] * WHOLE / SIZE + WHOLE**2 / SIZE**2 + 1),
+            log(A_X[ROW] ** 2 - WHOLE**2 / SIZE**2 + 1),
+        ),
+        (A_Y[ROW] / (WHOLE**2 + 1), A_Y[ROW] * (1 / (1 + WHOLE**2)), A_Y[ROW] / (WHOLE**2 + 2)),
+    ],
+)
+def test_sums_beside_sums_have_one_form(one: Expr, other: Expr, unlike: Expr) -> None:
+    first, second, third = (in_terms(Sum(each, (ROW, 1, SIZE))) for each in (one, other, unlike))
+    assert first == second == in_terms(first)
+    assert first != third
+
+
+def test_a_sum_may_choose_between_its_row_and_another_sum() -> None:
+    chosen = Piecewise((A_Y[ROW], A_Y[ROW] > 0), (WHOLE, True))
+    assert in_terms(Sum(chosen, (ROW, 1, SIZE))).has(Piecewise)
+    inner = Sum(exp(Sum(A_X[INNER], (INNER, 1, PART)) ** 2 * A_Y[ROW]), (ROW, 1, SIZE))
+    assert len(in_terms(Sum(inner, (SIZE, 1, 3))).args) == 3

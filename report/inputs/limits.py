@@ -205,13 +205,12 @@ def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
 
 def _either(nominal: Printed, share: Printed) -> str:
     """What to write where a percentage may be of a pure number, or of one."""
-    widths = abs(nominal.number) * share.value, share.value / nominal.scale
-    more = behind(nominal.unit)
-    ways = (
-        f"{_decimal(nominal.number - width, 0)} .. {_decimal(nominal.number + width, 0)}{more}"
-        for width in widths
-    )
-    return f"a share of {nominal.text}{more}, or of one? write the limits: {' or '.join(ways)}"
+    unit, number = nominal.unit, nominal.number
+    widths = [(abs(number) * share.value, unit), (share.value / nominal.scale, unit)]
+    if unit == "1" and abs(number) > share.number:  # what is behind may be the unit of both
+        widths.append((share.number, share.unit))
+    ways = (f"{_decimal(number - w, 0)} .. {_decimal(number + w, 0)}{behind(of)}" for w, of in widths)
+    return f"a share of {nominal.text}{behind(unit)}, or of one? write the limits: {' or '.join(ways)}"
 
 
 def _decimal(number: Fraction, places: int) -> str:

@@ -200,8 +200,9 @@ def otherwise(inputs: Inputs, numbers: Mapping[str, Sequence[float]]) -> Inputs:
         name: each.of_others(there(measured[name])) if name in measured else each
         for name, each in own.columns.items()
     }
+    apart = {pair: r for pair, r in own.correlations.items() if not {*pair} <= {*own.paired}}
     together = correlations_of({name: there(measured[name]) for name in own.paired})
-    stated = replace(own, columns=columns, correlations={**own.correlations, **together})
+    stated = replace(own, columns=columns, correlations={**apart, **together})
     every = {name: printed for name, (printed,) in stated.of(parameters).items() if printed}
     return replace(inputs.with_numbers(stated.of(measured)), parameters=every, uncertainty=stated)
 

@@ -83,7 +83,7 @@ def _taken(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         for row, each in ((row, each) for row, errors in enumerate(taken.errors) for each in errors):
             moves.setdefault(each.origin, []).append((name, row, each.moved))
             first.setdefault(each.origin, (taken, each))
-    files = {taken.made_from: taken.file for _, taken in every}
+    files = {taken.made_from: taken.file for _, taken in reversed(every)}
     begun = {origin: files.get(origin[0], f"through {taken.file}") for origin, (taken, _) in first.items()}
     names = Counter((origin[1], file) for origin, file in begun.items())
     for origin, (_, each) in first.items():

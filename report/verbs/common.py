@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ..cells.address import index_text, parts
@@ -155,12 +155,13 @@ class Progress:
 
     def _name_the_long(self) -> None:
         named = before = ""
-        while not self._ended.wait(self._patience):
-            if self._now == before != named:
-                named = before
-                self.stream.write(f"still {named} ...\n")
-                self.stream.flush()
-            before = self._now
+        with suppress(OSError, ValueError):  # nobody reads it any more
+            while not self._ended.wait(self._patience):
+                if self._now == before != named:
+                    named = before
+                    self.stream.write(f"still {named} ...\n")
+                    self.stream.flush()
+                before = self._now
 
     def __enter__(self) -> Progress:
         if not self.stream.isatty():

@@ -100,9 +100,9 @@ class GivenCells:
         size, terms = float(block.place.scale), list[str]()
         for error in printed.stated or ():
             said = inputs.uncertainty.again(error.said, printed.unit, error.shape)
-            if error.law is not None:  # where it is cut off, its width is another one
+            if said is None or error.law is not None:  # where it is cut off, its width is another one
                 return ""
-            share = said.parts[0].share if said else 0.0
+            share = said.parts[0].share
             fixed, moving = error.u - share * abs(float(printed.value)), share * float(number.scale) / size
             more = f"{fixed / size:+.15g}" if abs(fixed) > _SAME * error.u else ""
             terms.append(f"{moving:.15g}*ABS({cell}){more}" if share else more)

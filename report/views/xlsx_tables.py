@@ -76,7 +76,12 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     style.page(sheet, f"{name}: {axis.described}")
     if name in grid.notes:
         weighed = [block for block in blocks if block.name in report.sheet.weighed]
-        follow = [any(inputs.share_of_reading(b, row) for row in range(b.place.rows)) for b in weighed]
+        follow = [
+            bool(inputs.share_of_reading(block, row))
+            for block in weighed
+            for row, number in enumerate(block.values)
+            if isinstance(number, float)
+        ]
         some = " that are no share of a reading" * any(follow)
         stays = "" if all(follow) else f" but standard uncertainties{some}, which stay as issued"
         says = f"Type over the yellow cells; all else follows{stays}."
