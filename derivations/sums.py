@@ -19,13 +19,29 @@ def in_terms(expression: Any) -> Any:
     if not isinstance(expression, sp.Basic) or not expression.has(sp.Sum):
         return expression
     if isinstance(expression, sp.Sum):
-        *inner, limits = expression.limits
-        body = in_terms(sp.Sum(expression.function, *inner) if inner else expression.function)
+        *inner, (named, *ends) = expression.limits
+        # Its own number is nobody else's: an inner sum may be called by the same one, and is called anew.
+        index = sp.Dummy(**named.assumptions0)
+        whole = sp.Sum(expression.function, *inner) if inner else expression.function
+        body, limits = in_terms(_renumbered(whole, named, index)), (index, *ends)
         held: dict[sp.Expr, _Held] = {}
-        body = sp.expand(sp.expand_log(sp.expand_power_base(_without_sums(body, limits[0], held))))
+        body = sp.expand(sp.expand_log(sp.expand_power_base(_without_sums(body, index, held))))
         terms = sp.Add(*(_of_term(term, *limits) for term in sp.Add.make_args(body)))
         return terms.xreplace({dummy: part for part, dummy in held.items()})
     return expression.func(*(in_terms(argument) for argument in expression.args))
+
+
+def _renumbered(body: Any, named: sp.Symbol, index: sp.Symbol) -> Any:
+    """A body with another running number, but where that is the own one of what is taken over rows in it."""
+    if named not in body.free_symbols:
+        return body
+    if body == named:
+        return index
+    if any(named == limit[0] for limit in getattr(body, "limits", ())):
+        function, *limits = body.args
+        ends = ((own, *(_renumbered(end, named, index) for end in more)) for own, *more in limits)
+        return body.func(function, *(sp.Tuple(*limit) for limit in ends))
+    return body.func(*(_renumbered(part, named, index) for part in body.args))
 
 
 class _Held(sp.Dummy):  # type: ignore[misc]

@@ -2,8 +2,9 @@
 
 import pytest
 from proving import X, a, b, claim, decide, given, n, q
-from sympy import Eq, Expr, IndexedBase, Piecewise, Sum, Symbol, exp, log
+from sympy import Add, Eq, Expr, IndexedBase, Integer, Piecewise, Sum, Symbol, exp, log
 
+from loopsheet.derivations.algebra import vanishes
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.derivations.sums import in_terms
 
@@ -142,3 +143,15 @@ def test_a_sum_may_choose_between_its_row_and_another_sum() -> None:
     assert in_terms(Sum(chosen, (ROW, 1, SIZE))).has(Piecewise)
     inner = Sum(exp(Sum(A_X[INNER], (INNER, 1, PART)) ** 2 * A_Y[ROW]), (ROW, 1, SIZE))
     assert len(in_terms(Sum(inner, (SIZE, 1, 3))).args) == 3
+
+
+def test_a_form_that_was_changed_is_formed_again() -> None:
+    """A sum that is put in nests sums deeper: no running number takes that of another for its own."""
+    double = Sum(exp(a * A_X[INNER] * A_Y[ROW]), (INNER, 1, SIZE), (ROW, 1, SIZE))
+    diagonal = SIZE * Sum(exp(a * A_X[ROW] * A_Y[ROW]), (ROW, 1, SIZE))
+    inside = {a: Sum(A_X[INNER], (INNER, 1, PART))}
+    twice = in_terms(in_terms(double).xreplace(inside))
+    assert twice == in_terms(double.xreplace(inside)) == in_terms(twice)
+    assert not vanishes(twice - diagonal.xreplace(inside))
+    one = in_terms(in_terms(Sum(exp(a * A_Y[ROW]), (ROW, 1, SIZE))).xreplace(inside))
+    assert in_terms(one.xreplace({SIZE: Integer(3)})).func is Add
