@@ -21,7 +21,7 @@ def in_terms(expression: Any) -> Any:
     if isinstance(expression, sp.Sum):
         *inner, (named, *ends) = expression.limits
         # Its own number is nobody else's: an inner sum may be called by the same one, and is called anew.
-        index = sp.Dummy(**named.assumptions0)
+        index = sp.Dummy("row", **named.assumptions0)
         whole = sp.Sum(expression.function, *inner) if inner else expression.function
         body, limits = in_terms(_renumbered(whole, named, index)), (index, *ends)
         held: dict[sp.Expr, _Held] = {}
@@ -37,10 +37,16 @@ def _renumbered(body: Any, named: sp.Symbol, index: sp.Symbol) -> Any:
         return body
     if body == named:
         return index
-    if any(named == limit[0] for limit in getattr(body, "limits", ())):
+    last = max(
+        (n for n, (own, *ends) in enumerate(getattr(body, "limits", ())) if own == named and ends), default=-1
+    )
+    if last >= 0:  # it owns what stands before it; of its own ends and of those behind it is another one
         function, *limits = body.args
-        ends = ((own, *(_renumbered(end, named, index) for end in more)) for own, *more in limits)
-        return body.func(function, *(sp.Tuple(*limit) for limit in ends))
+        there = (
+            limit if n < last else sp.Tuple(limit[0], *(_renumbered(end, named, index) for end in limit[1:]))
+            for n, limit in enumerate(limits)
+        )
+        return body.func(function, *there)
     return body.func(*(_renumbered(part, named, index) for part in body.args))
 
 
@@ -65,7 +71,7 @@ def _without_sums(body: Any, index: sp.Symbol, held: dict[sp.Expr, _Held]) -> An
     if isinstance(body, sp.Expr) and not is_expanded and not body.has(index):
         part = sp.expand(body)
         if part not in held:
-            held[part] = _Held(real=part.is_real, positive=part.is_positive)
+            held[part] = _Held("part", real=part.is_real, positive=part.is_positive)
             held[part].depth = _depth(part)
         return held[part]
     return body.func(*(_without_sums(part, index, held) for part in body.args))

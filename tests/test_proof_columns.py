@@ -2,7 +2,7 @@
 
 import pytest
 from proving import X, a, b, claim, decide, given, n, q
-from sympy import Add, Eq, Expr, IndexedBase, Integer, Piecewise, Sum, Symbol, exp, log
+from sympy import Add, Dummy, Eq, Expr, IndexedBase, Integer, Piecewise, Sum, Symbol, exp, log, sin
 
 from loopsheet.derivations.algebra import vanishes
 from loopsheet.derivations.proved import ProofStatus
@@ -155,3 +155,19 @@ def test_a_form_that_was_changed_is_formed_again() -> None:
     assert not vanishes(twice - diagonal.xreplace(inside))
     one = in_terms(in_terms(Sum(exp(a * A_Y[ROW]), (ROW, 1, SIZE))).xreplace(inside))
     assert in_terms(one.xreplace({SIZE: Integer(3)})).func is Add
+
+
+def test_the_end_of_an_inner_sum_is_that_of_the_sum_which_it_stands_in() -> None:
+    """Both count to j here, and the one whose number is j is the nearer."""
+    near, far = (Sum(A_X[INNER], (INNER, 1, ROW), (own, 1, ROW), (ROW, 1, SIZE)) for own in (ROW, PART))
+    assert in_terms(near) != in_terms(far)
+    right = Sum(A_X[INNER], (INNER, 1, PART), (PART, 1, ROW), (ROW, 1, SIZE))
+    assert in_terms(near) == in_terms(right)
+
+
+@pytest.mark.parametrize("count", [8, 9, 98, 99, 100])
+def test_a_form_does_not_hang_on_what_was_formed_before(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    body = sin(ROW - INNER) * A_X[ROW] * A_Y[INNER]
+    first = in_terms(Sum(body, (ROW, 1, SIZE), (INNER, 1, SIZE)))
+    monkeypatch.setattr(Dummy, "_count", count)
+    assert in_terms(Sum(body, (ROW, 1, SIZE), (INNER, 1, SIZE))) == first
