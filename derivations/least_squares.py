@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain, combinations, product
 from string import ascii_lowercase as LETTERS
 from typing import Any
@@ -359,7 +360,7 @@ class LeastSquares:
         latex = "" if self.linear else rf"\delta_{{{m + 1}}}"
         return FitQuantity(str(unknown), title, latex, unknown, Derivation((*self._reduced(m), last)))
 
-    @property
+    @cached_property
     def normal(self) -> dict[sp.Symbol, Equation]:
         """The normal equation of each parameter: together they say what the parameters are."""
         pairs = zip(self.parameters, self.words, strict=True)

@@ -172,13 +172,13 @@ def _around(text: re.Match[str]) -> tuple[Printed, Printed]:
     is_share = tolerance.unit in _SHARES
     unit = "" if " " in text["nominal"] or is_share else tolerance.unit  # a unit behind both is that of both
     nominal = _number(f"{text['nominal']} {unit}".strip(), 0, "LS441")
-    is_pure_one = is_pure(nominal.unit) or nominal.unit in _SHARES
-    if is_share and is_pure_one and nominal.number == 0:  # of which no share is meant
-        nominal = replace(nominal, unit=tolerance.unit, scale=tolerance.scale)
-    is_share &= not (is_pure_one and (nominal.number == 0 or nominal.unit == tolerance.unit == "ppm"))
+    if is_share and (is_pure(nominal.unit) or nominal.unit in _SHARES):
+        if nominal.number == 0:
+            nominal = replace(nominal, unit=tolerance.unit, scale=tolerance.scale)
+        elif not nominal.unit == tolerance.unit == "ppm":
+            raise StatementError("LS441", text[0], 0, _either(nominal, tolerance))
+        is_share = False  # nothing has no share, and nobody tells one in ppm of ppm
     known = parse_open(nominal.unit)
-    if is_share and is_pure_one:
-        raise StatementError("LS441", text[0], 0, _either(nominal, tolerance))
     if is_share and known.zero:
         said = f"zero {nominal.unit} is not nothing, of which there is a share: say how much, in K"
         raise StatementError("LS441", text[0], 0, said)
@@ -225,9 +225,10 @@ def _number(text: str, start: int, code: str) -> Printed:
     try:
         number = read_printed(digits, parse_open(unit.strip() or "1"))
     except NumberError as error:
-        comma = re.fullmatch(r"([+-]?\d+),(\d+)", digits)
-        hint = f"a decimal comma? write {comma[1]}.{comma[2]}" if comma else "a number, a space and a unit"
-        raise StatementError(code, digits, start, error.fields["suggestion"] or hint) from None
+        point, hint = error.fields["example"], error.fields["suggestion"] or "a number, a space and a unit"
+        raise StatementError(
+            code, digits, start, f"a decimal comma? write {point}" if point else hint
+        ) from None
     except UnitError as error:
         at = start + text.find(unit) + error.start
         raise StatementError(code, error.text, at, error.suggestion) from None

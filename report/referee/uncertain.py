@@ -109,14 +109,15 @@ class _Asked:
         start = np.array([unknown.start for unknown in unknowns])
         low, high = np.array([unknown.interval() for unknown in unknowns]).reshape(-1, 2).T
 
+        every = {
+            name: np.broadcast_to(self.values.value[name], len(self.values.labels(sheet[name]))).tolist()
+            for name in dict.fromkeys(unknown.column for unknown in unknowns)
+        }
+
         def at(point: Array) -> float:
-            numbers: dict[str, list[float]] = {}
+            numbers = {name: [*column] for name, column in every.items()}
             for unknown, value in zip(unknowns, point.tolist(), strict=True):
-                column = sheet[unknown.column]
-                every = self.values.value[unknown.column]
-                numbers.setdefault(
-                    unknown.column, np.broadcast_to(every, len(self.values.labels(column))).tolist()
-                )[unknown.row] = value
+                numbers[unknown.column][unknown.row] = value
             inputs = otherwise(self.inputs, numbers)
             asked = _Asked(inputs, compute(inputs).values, self.step, *like)
             like[:] = [asked.spread]

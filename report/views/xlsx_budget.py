@@ -23,7 +23,7 @@ from ..result import conformity
 from ..result.numbers import LEADING, SURE, rounded
 from ..result.result import Report
 from ..result.uncertain import Budget, Contribution, ErrorSource
-from .xlsx_inputs import as_printed, same_sum
+from .xlsx_inputs import as_printed, same_sum, share_of
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
 
@@ -40,8 +40,6 @@ _COLUMNS = (
     ("contribution", 15),
     ("share of the variance", 12),
 )
-_NONE = 1e-12
-"""Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _AS_ISSUED = 11
 """The column, from 0, that names the inputs where sensitivities are numbers."""
 _UNLIMITED = 10.0**15
@@ -300,14 +298,11 @@ class _Written:
     def of_share(self, source: ErrorSource, name: str, value: float, u: float, cell: str) -> str:
         """The formula of a standard uncertainty in the unit of a cell, of which it is a share."""
         block = self.grid[name]
-        place = block.place
         said = self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
-        if not (said and said.parts[0].share and not place.zero):
+        if not (said and said.parts[0].share and not block.place.zero):
             return ""
-        share, estimate = said.parts[0].share, abs(place.of(value))
-        fixed = abs(u) / float(place.scale) - share * estimate
-        more = f"{fixed:+.15g}" if abs(fixed) > _NONE * share * estimate else ""
-        return f"{share:.15g}*ABS(N({cell})){more}"
+        scale = float(block.place.scale)
+        return share_of(said.parts[0].share, value, abs(u), f"ABS(N({cell}))", scale, scale)
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""

@@ -7,6 +7,7 @@ it only comes first: no formula names a given cell but the one that checks it, a
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 from ..cells.grid import FIRST_ROW, SCALARS, CellBlock, Grid, Place, checked, letters
@@ -25,6 +26,8 @@ _LARGEST = 1e90
 """Of a larger number no cell holds the third power, times that of its row."""
 _SAME = 1e-12
 """How far, of the sum of its terms, a sum may be off by rounding: that of a thousand terms is off by less."""
+_NONE = 1e-12
+"""Of an uncertainty, what is left of it besides a share is this small where nothing is."""
 _ROWS_TOLD = FIRST_ROW - 5
 """The row, from 0, of the cell that says whether the rows are those that the formulas are for."""
 _CODE, _FINE = CODES[Status.INPUT], "ok"
@@ -56,16 +59,15 @@ class GivenCells:
         printed, place = self.report.inputs.printed(block.name), block.place
         fixed = block.name in self.counts
         if not printed:
+            shares = self.shares.get(block.name)
             # Of an empty cell there is no uncertainty: a code.
             numbers = [None if isinstance(number, str) else number for number in block.values]
             whole = all(number is None or number.is_integer() for number in numbers)
             figures = [None] * len(numbers) if whole else self.report.figures(block.name)
             for row, (number, figure) in enumerate(zip(numbers, figures, strict=True)):
-                at, form = (
-                    (place.row + row, place.column),
-                    style("fixed", "0" if whole else number_format(figure)),
-                )
-                if number is not None and (formula := self.share_of_reading(block, row)):
+                at, formula = (place.row + row, place.column), shares[row] if shares else ""
+                form = style("fixed", "0" if whole else number_format(figure))
+                if formula:
                     style.formula(sheet, *at, formula, number, form)
                 else:
                     sheet.write(*at, number, form)
@@ -84,33 +86,38 @@ class GivenCells:
         refused = {"type": "formula", "criteria": f"={self._refused(block)}".replace("$", "")}
         sheet.conditional_format(*every, refused | {"format": style("finding")})
 
-    def share_of_reading(self, block: CellBlock, row: int) -> str:
+    @cached_property
+    def shares(self) -> dict[str, list[str]]:
+        """The formulas of the standard uncertainties that rows are weighed by, by column: see `_of_share`."""
+        weighed = self.report.sheet.weighed
+        return {
+            block.name: [self._of_share(block, row) for row in range(block.place.rows)]
+            for block in self.grid.blocks
+            if block.name in weighed and block.kind == "given"
+        }
+
+    def _of_share(self, block: CellBlock, row: int) -> str:
         """The formula of a standard uncertainty of which a share of its number is a part; of others nothing.
 
         As issued it is what it was: what is weighed by it has the same digits.
         """
-        inputs, of = self.report.inputs, self.report.sheet.weighed.get(block.name, "")
-        printed, number = (
-            inputs.printed(of)[row] if of else None,
-            self.grid[checked(of)].place if of else None,
-        )
-        if printed is None or number is None or number.zero or of in inputs.taken:
+        inputs, of, u = self.report.inputs, self.report.sheet.weighed[block.name], block.values[row]
+        printed, number = inputs.printed(of)[row], self.grid[checked(of)].place
+        if printed is None or not isinstance(u, float) or number.zero or of in inputs.taken:
             return ""
-        cell = number.cell(row, block.place.worksheet)
-        size, terms = float(block.place.scale), list[str]()
+        cell, terms = number.cell(row, block.place.worksheet), list[str]()
         for error in printed.stated or ():
             said = inputs.uncertainty.again(error.said, printed.unit, error.shape)
             if said is None or error.law is not None:  # where it is cut off, its width is another one
                 return ""
-            share = said.parts[0].share
-            fixed, moving = error.u - share * abs(float(printed.value)), share * float(number.scale) / size
-            more = f"{fixed / size:+.15g}" if abs(fixed) > _SAME * error.u else ""
-            terms.append(f"{moving:.15g}*ABS({cell}){more}" if share else more)
+            scales = float(number.scale), float(block.place.scale)
+            terms.append(
+                share_of(said.parts[0].share, float(printed.value), error.u, f"ABS({cell})", *scales)
+            )
         if not any("ABS" in term for term in terms):
             return ""
         told = terms[0] if len(terms) == 1 else f"SQRT(SUMSQ({','.join(filter(None, terms))}))"
-        issued, u = _number(printed, number), block.values[row]
-        return f"=IF(ISNUMBER({cell}),IF({cell}={issued!r},{u!r},{told}),{u!r})"
+        return f"=IF(ISNUMBER({cell}),IF({cell}={_number(printed, number)!r},{u!r},{told}),{u!r})"
 
     def note(self, block: CellBlock, printed: Printed | None) -> str:
         """What a cell is, what it may be, and where its number comes from, if it has one."""
@@ -258,6 +265,23 @@ class GivenCells:
 def _number(printed: Printed, place: Place) -> float:
     """A printed number in the unit of its cell."""
     return float((printed.value - place.zero) / place.scale)
+
+
+def share_of(share: float, value: float, u: float, size: str, scale: float, unit: float) -> str:
+    """The formula of a standard uncertainty of which a share of a number is a part, the rest is a number.
+
+    Parameters
+    ----------
+    share, value, u : float
+        The share, the number and the standard uncertainty, in SI.
+    size : str
+        The formula of the size of the number.
+    scale, unit : float
+        The units of the number in its cell, and of the formula, in SI.
+    """
+    fixed = u - share * abs(value)
+    more = f"{fixed / unit:+.15g}" if abs(fixed) > _NONE * u else ""
+    return f"{share * (scale / unit):.15g}*{size}{more}" if share else more
 
 
 def same_sum(told: str, terms: Sequence[float]) -> str:

@@ -77,9 +77,9 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     if name in grid.notes:
         weighed = [block for block in blocks if block.name in report.sheet.weighed]
         follow = [
-            bool(inputs.share_of_reading(block, row))
+            bool(formula)
             for block in weighed
-            for row, number in enumerate(block.values)
+            for formula, number in zip(inputs.shares[block.name], block.values, strict=True)
             if isinstance(number, float)
         ]
         some = " that are no share of a reading" * any(follow)
