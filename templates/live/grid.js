@@ -229,12 +229,13 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   const state = copied(page.history.now), tests = state.tables[axis], labels = tests.map(({ label }) => String(label)), lost = new Set();
   const file = Object.keys(LIVE.tables[axis].heads), first = rows.map(([text]) => read(text)), width = rows[0].length;
   let names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell));
-  if (!head && width > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text))) {
-    // Rows as they stand in the file, or numbers of rows before what stands here.
-    names = width === file.length ? file.map((name) => (name === "test" ? "" : name)) : ["", ...names];
-  } else if (!head) {
-    const there = file.filter((name) => LIVE.columns[name] || /^u\(/.test(name)), at = there.indexOf(cell);
-    if (names.slice(0, width).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
+  if (!head) {
+    // Rows as they stand in the file, or numbers of rows before what stands here; in which order, no head tells.
+    const numbered = width > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text));
+    const whole = numbered && width === file.length;
+    const there = file.filter((name) => LIVE.columns[name] || (!whole && /^u\(/.test(name))), at = whole ? 0 : there.indexOf(cell);
+    if ((whole ? inputs : names.slice(0, width)).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
+    if (numbered) names = whole ? file.map((name) => (name === "test" ? "" : name)) : ["", ...names];
   }
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
   if (why) return `Nothing was pasted: ${why}.`;

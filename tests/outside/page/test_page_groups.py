@@ -88,7 +88,7 @@ def test_readings_of_another_group_are_not_pasted(open_page: Callable[..., Live]
 def test_a_block_without_heads_is_not_put_into_other_columns(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
-    """Columns stand in the file in another order than in the page: heads tell them, and so do whole rows."""
+    """Columns stand in the file in another order than in the page and in the workbook: only heads tell them."""
     rows = tuple((word, "1.0", y) for word, y in grouped.FEW)
     code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
     folder = grouped.write(tmp_path, rows, "instrument,x [mm],y [mm]", code)
@@ -100,11 +100,14 @@ def test_a_block_without_heads_is_not_put_into_other_columns(
     assert live.text("live-banner") == ""
     live.paste("x\ty\n1.1\t1.5\n")
     live.paste("2\tB\t1.0\t2.3\n3\tA\t1.2\t1.8\n")
+    assert live.text("live-note") == f"Nothing was pasted: {said}"
+    heads = "reading\tinstrument\tx\ty\n"
+    live.paste(heads + "2\tB\t1.0\t2.3\n3\tA\t1.2\t1.8\n")
     assert live.text("live-note") == ""
     again = rebuilt(folder, ("1,A,1.0,1.50", "1,A,1.1,1.5"), ("2,B,1.0,2.25", "2,B,1.0,2.3"))
     again = rebuilt(folder, ("3,A,1.0,1.75", "3,A,1.2,1.8"))
     assert driving.differences(live.cells(), again) == []
-    live.paste("2\tA\t1.0\t2.4\n3\tA\t1.2\t1.8\n")
+    live.paste(heads + "2\tA\t1.0\t2.4\n3\tA\t1.2\t1.8\n")
     assert live.text("live-note") == "Nothing was pasted: instrument of reading 2 is B, not A."
 
 
