@@ -125,6 +125,10 @@ case("a_running_number", s * w.symbol + gap[p], POINTS, [Rational(g, 2) for g in
 case("a_running_number_in_a_sum", Sum(s * gap[p], (q, 1, n_points)), None, [30])
 case("two_sums", Sum(2 * a[k], (k, 1, n)) - Sum(a[k], (k, 1, n)), None, [12])
 case("powers_in_a_sum", Sum(Symbol("count", positive=True) ** (2 * a[k]), (k, 1, n)), None, [16 + 64 + 16384])
+# No slope at its place, and rounding leaves it there by the square of what it does to the mean.
+alike = given("alike", ROWS, [0.1, 0.1, 0.1])
+mean_alike = case("mean_alike", Sum(alike[k], (k, 1, n)) / n, None, [Rational(0.1)])
+case("squares_of_nothing", Sum((alike[k] - mean_alike.symbol) ** 2, (k, 1, n)), None, [0])
 case("a_median", Median(gap[p], (p, 1, n_pairs)) * w.symbol, None, [2])
 case("a_median_of_a_sets_parts", Median(gap[p], (q, 1, n_points)), None, [4])
 case("a_median_of_members", a[k] - Median(a[j], (p, 1, n_pairs)), ROWS, [-5, -4, 0])

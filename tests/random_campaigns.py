@@ -376,19 +376,19 @@ def printed_once() -> Iterator[None]:
         patch.setattr(Program, "of", once(Program.of))
         patch.setattr(bounds.SheetDerivatives, "of", once(bounds.SheetDerivatives.of))
         patch.setattr(exact, "_texts", once(exact._texts))
-        patch.setattr(judging, "bounds", known_bounds())
+        patch.setattr(judging, "RoundingBounds", known_bounds())
         yield
 
 
 def known_bounds() -> Callable[..., Any]:
     """What rounding may do to the same cells, found once: all data that are refused leave the same."""
-    known: dict[Any, dict[str, NDArray[np.float64]]] = {}
+    known: dict[Any, bounds.RoundingBounds] = {}
 
     def found(sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, NDArray[np.float64]]) -> Any:
         sizes = tuple(sorted((name, layout.size) for name, layout in layouts.items()))
         key = id(sheet), sizes, *((name, column.tobytes()) for name, column in value.items())
         if key not in known:
-            known[key] = bounds.bounds(sheet, layouts, value)
+            known[key] = bounds.RoundingBounds(sheet, layouts, value)
         return known[key]
 
     return found

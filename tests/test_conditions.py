@@ -50,7 +50,7 @@ def bounded(*columns: Column, **data: Any) -> dict[str, Any]:
     sheet = Sheet((a, b, x, *columns))
     data = {"a": 3.0, "b": 2.0, "x": [1.0, 2.0, 5.0], **data}
     values = evaluate(sheet, {"rows": [1, 2, 3]}, data)
-    return {"value": values.value, **numbers.bounds(sheet, values.layouts, values.value)}
+    return {"value": values.value, **numbers.RoundingBounds(sheet, values.layouts, values.value)}
 
 
 A, B = a.symbol, b.symbol
@@ -92,14 +92,24 @@ def test_what_cancels_between_two_cells_cancels() -> None:
     assert found["c"] == pytest.approx([2 + 6 / 3 + 3 * 2 / 3])
 
 
-def test_the_square_of_what_is_nothing_but_rounding() -> None:
+@pytest.mark.parametrize("of_a_cell", [True, False])
+def test_the_square_of_what_is_nothing_but_rounding(of_a_cell: bool) -> None:
     """It has no slope at 0; as far as rounding goes, 8 eps times the bound of the difference, it has."""
     d = formula("d", A - B)
-    found = bounded(d, formula("c", d.symbol**2), a=1.0, b=1.0)
-    assert found["value"]["c"] == 0
-    assert found["d"] == pytest.approx([4])
-    assert found["c"] == pytest.approx([2 * (8 * numbers.EPS * 4) * 4], rel=1e-6)
-    assert bounded(d, formula("c", d.symbol**2), a=1.0, b=2.0)["c"] == pytest.approx([1 + 2 * 6])
+    sheet = Sheet((a, b, d, formula("c", (d.symbol if of_a_cell else A - B) ** 2)))
+
+    def bounds(one: float, other: float) -> numbers.RoundingBounds:
+        values = evaluate(sheet, {}, {"a": one, "b": other})
+        return numbers.RoundingBounds(sheet, values.layouts, values.value)
+
+    most = 2 * (8 * numbers.EPS * 4) * 4
+    square = (2 * numbers.EPS) ** 2
+    assert bounds(1.0, 1.0)["c"] == [0]
+    assert (
+        square <= numbers.LIMIT * numbers.EPS * bounds(1.0, 1.0).of("c", 0, square) <= 8 * numbers.EPS * most
+    )
+    assert bounds(1.0, 1.0).of("c", 0, 1e-20) <= most
+    assert bounds(1.0, 2.0).of("c", 0, 1e-20) == bounds(1.0, 2.0)["c"] == pytest.approx(1 + 2 * 6)
 
 
 def test_a_row_is_its_own() -> None:
@@ -343,7 +353,7 @@ def test_a_term_that_is_dropped_is_noticed(prepared: Prepared, monkeypatch: pyte
 def test_bounds_of_the_paper(prepared: Prepared) -> None:
     """At least the cell, and at least what the data's own roundings amount to; not a thousand times that."""
     values = evaluate(prepared.sheet, prepared.labels, prepared.data)
-    found = numbers.bounds(prepared.sheet, values.layouts, values.value)
+    found = numbers.RoundingBounds(prepared.sheet, values.layouts, values.value)
     for column in prepared.sheet.columns:
         assert np.isfinite(found[column.name]).all(), column.name
         assert (found[column.name] >= np.abs(values.value[column.name])).all(), column.name

@@ -61,18 +61,19 @@ def test_every_engine_finds_what_is_known(
             true, number = judged.value[name][row], found.value[name][row]
             with mpmath.workdps(exact.DIGITS + 10):
                 if engine != "exact":
-                    _is_near(number, true, found, float(judge.bounds[name][row]), name, row)
+                    _is_near(number, true, found, judge, name, row)
                 elif not isinstance(each, Status | None):
                     closed = mpmath.mpf(sympy.N(each, exact.DIGITS + 10))
                     assert abs(true - closed) <= abs(closed) * mpmath.mpf(10) ** -50, row
     assert len(found.value[name]) == len(known)
 
 
-def _is_near(number: Any, true: Any, found: Reading, bound: float, name: str, row: int) -> None:
+def _is_near(number: Any, true: Any, found: Reading, judge: Judge, name: str, row: int) -> None:
     if 0 < abs(true) < SMALLEST:
         return  # what a double has left of its digits is chance
     lost = exact.as_mpf(found.rounded[name][row]) if name in found.rounded else 0
-    assert abs(exact.as_mpf(number) - true) - lost <= LIMIT * EPS * bound, row
+    difference = float(abs(exact.as_mpf(number) - true) - lost)
+    assert difference <= LIMIT * EPS * judge.bounds.of(name, row, difference), row
 
 
 def test_a_gap_names_an_engine_and_a_case_that_there_are() -> None:

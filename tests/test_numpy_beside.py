@@ -11,7 +11,7 @@ import pytest
 
 from loopsheet.report.engines import numpy_beside
 from loopsheet.report.inputs.folders import PAPER
-from loopsheet.report.judge.bounds import EPS, bounds
+from loopsheet.report.judge.bounds import EPS, RoundingBounds
 from loopsheet.report.result.agreement import LIMIT
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty import monte_carlo
@@ -39,7 +39,9 @@ def draws(report: Any, name: str) -> monte_carlo._Draws:
 
 def apart(report: Any, name: str, row: int, found: Any, asked: Any) -> float:
     """How far draws are from those that were asked, in units of what rounding is allowed."""
-    allowed = LIMIT * EPS * bounds(report.sheet, report.values.layouts, report.values.value)[name][row]
+    allowed = (
+        LIMIT * EPS * RoundingBounds(report.sheet, report.values.layouts, report.values.value)[name][row]
+    )
     return float(np.abs(found - asked).max() / allowed)
 
 

@@ -7,7 +7,7 @@ cancels here too. This bound over |c|, at least 1, is the condition of the cell.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,39 +27,73 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 
 
-def bounds(sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array]) -> dict[str, Array]:
-    """Bound the rounding error of every cell.
+class RoundingBounds(Mapping[str, Array]):
+    """A bound of the rounding error of every cell.
+
+    By column name, of shape (rows,); in SI and units of eps, at least the cell's own size; infinite where
+    nothing is known, NaN where the cell has no value.
 
     Parameters
     ----------
     layouts : mapping of axis name to Layout
     value : mapping of column name to float array (rows,)
         All columns in SI; NaN where a cell has no value.
-
-    Returns
-    -------
-    mapping of column name to float array (rows,)
-        In SI and units of eps, at least the cell's own size; infinite where nothing is known, NaN where
-        the cell has no value.
     """
-    made = SheetDerivatives.of(sheet, True)
-    status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
-    sources, number = {}, 0
-    for node in made.nodes:
-        size = 1 if node.axis is None else layouts[node.axis].size
-        sources[node.name], number = np.arange(number, number + size), number + size
-    chain = Chain(made, layouts, sources)
-    found = _Spread(chain, Values(sheet, layouts, value, status)).bounds()
-    # A residual of a line through all points is nothing but rounding, and its square has no slope there. How
-    # far rounding may move it, it has one.
-    room = {name: LIMIT * EPS * np.where(np.isfinite(bound), bound, 0.0) for name, bound in found.items()}
-    moved = {name: np.where(np.abs(own) < room[name], room[name], own) for name, own in value.items()}
-    if all(np.array_equal(moved[name], own, equal_nan=True) for name, own in value.items()):
-        return found
-    again = _Spread(chain, Values(sheet, layouts, moved, status)).bounds()
-    return {name: np.maximum(bound, again[name]) for name, bound in found.items()}
+
+    def __init__(self, sheet: Sheet, layouts: Mapping[str, Layout], value: Mapping[str, Array]) -> None:
+        made = SheetDerivatives.of(sheet, True)
+        sources, number = {}, 0
+        for node in made.nodes:
+            size = 1 if node.axis is None else layouts[node.axis].size
+            sources[node.name], number = np.arange(number, number + size), number + size
+        self.chain = Chain(made, layouts, sources)
+        self.sheet, self.layouts, self.value = sheet, layouts, value
+        self.near: list[dict[str, Array]] = []
+        self.found = self._at(value)
+
+    def __getitem__(self, name: str) -> Array:
+        return self.found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.found)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def _at(self, value: Mapping[str, Array]) -> dict[str, Array]:
+        status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
+        return _Spread(self.chain, Values(self.sheet, self.layouts, value, status)).bounds()
+
+    def nearby(self, number: int) -> dict[str, Array]:
+        """The bounds where all values are as far off, each by its own share, as rounding may leave them.
+
+        The square of a difference of equal numbers has no slope where it is, and has one there. Not less
+        than those where the values are; what is not known there stays.
+        """
+        while len(self.near) <= number:
+            draw = np.random.default_rng(len(self.near)).uniform
+            moved, found = {}, {}
+            for name, own in self.value.items():
+                room = LIMIT * EPS * np.where(np.isfinite(self.found[name]), self.found[name], 0.0)
+                moved[name] = own + room * draw(-1, 1, own.size)
+            for name, there in self._at(moved).items():
+                here = self.near[-1][name] if self.near else self.found[name]
+                found[name] = np.where(np.isfinite(there), np.maximum(here, there), here)
+            self.near.append(found)
+        return self.near[number]
+
+    def of(self, name: str, row: int, difference: float) -> float:
+        """The bound for a cell that differs by so much: that where its values are, if it is enough."""
+        bound = float(self.found[name][row])
+        for number in range(MOVES):
+            if not difference > LIMIT * EPS * bound:
+                break
+            bound = float(self.nearby(number)[name][row])
+        return bound
 
 
+MOVES = 3
+"""How often values are moved, before a difference is one: by chance two may move alike."""
 EXPANDED = 1 << 24
 """Up to so many numbers, what scalars do to a column's rows is added up source by source; beyond, their
 bounds are added, which is never less."""

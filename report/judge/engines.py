@@ -14,7 +14,6 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
 
 from ..cells.layout import Layout
 from ..cells.values import CODES, Cell, Status, Values
@@ -22,7 +21,7 @@ from ..engines import ENGINES, exact
 from ..quantity import SMALLEST
 from ..result.agreement import LIMIT, Agreement
 from ..sheet import Column, Sheet
-from .bounds import bounds
+from .bounds import RoundingBounds
 from .readers import Case, Reading
 
 EPS = float(np.finfo(float).eps)
@@ -40,9 +39,8 @@ class Judge:
 
     sheet: Sheet
     judged: exact.ExactValues
-    bounds: Mapping[str, NDArray[np.float64]]
-    """Of shape (rows,), by column name; as from :func:`~loopsheet.report.judge.bounds.bounds`, of the exact
-    values."""
+    bounds: RoundingBounds
+    """Of the exact values."""
     addresses: Mapping[str, Sequence[str]] = field(repr=False)
     """By column name; what the cells are called."""
 
@@ -72,7 +70,7 @@ class Judge:
         }
         empty = Values(sheet, layouts, {}, {})
         addresses = {column.name: _addresses(empty, column) for column in sheet.columns}
-        return cls(sheet, judged, bounds(sheet, layouts, doubles), addresses)
+        return cls(sheet, judged, RoundingBounds(sheet, layouts, doubles), addresses)
 
     def agreement(self, reading: Reading) -> Agreement:
         """Judge what an engine found."""
@@ -123,7 +121,7 @@ class Judge:
                 # Of what a file has cut, nothing is the engine's fault.
                 lost = exact.as_mpf(reading.rounded[name][row]) if name in reading.rounded else 0
                 difference = max(abs(exact.as_mpf(number) - true) - lost, 0)
-                tally.add(place, difference, float(self.bounds[name][row]), scale)
+                tally.add(place, difference, self.bounds.of(name, row, float(difference)), scale)
 
 
 @dataclass

@@ -88,7 +88,7 @@ def test_readings_of_another_group_are_not_pasted(open_page: Callable[..., Live]
 def test_a_block_without_heads_is_not_put_into_other_columns(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
-    """Columns stand in the file in another order than in the page and in the workbook: only heads tell them."""
+    """Columns stand in the file in another order than in page and workbook: only heads tell them."""
     rows = tuple((word, "1.0", y) for word, y in grouped.FEW)
     code = grouped.METHOD.replace("    instrument =", '    x = measured("mm", "another")\n    instrument =')
     folder = grouped.write(tmp_path, rows, "instrument,x [mm],y [mm]", code)
