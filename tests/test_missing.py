@@ -237,6 +237,29 @@ def test_results_that_share_a_sum_are_of_the_same_rows(
     assert len(re.findall(r"^engine ", capsys.readouterr().out, re.MULTILINE)) >= 1
 
 
+@pytest.mark.parametrize("groups", ["", ", of=lot"])
+@pytest.mark.parametrize(
+    "observed", ["T**2 / mean(T{of}) ** 2", "log(T / mean(T{of}))", "T**2 / sum(T{of}) + 0 * mean(x{of})"]
+)
+def test_a_fit_is_of_rows_that_have_all_it_names(tmp_path: Path, observed: str, groups: str) -> None:
+    """Also where the observed holds a sum of its own, over the rows that this has."""
+    code = (
+        "from sympy import log\nfrom loopsheet import Method, fit, groups, let, mean, measured, unknown\n\n"
+    )
+    code += 'class Line(Method, headline="b"):\n    "A line."\n    x = measured("m", "place")\n'
+    code += '    T = measured("s", "period", positive=True)\n    lot = groups("lot")\n'
+    code += f'    y = let({observed.replace("{of}", groups)}, "observed")\n    a = unknown("intercept")\n'
+    code += f'    b = unknown("slope")\n    line = fit(y, a + b * x{groups})\n'
+    x, T = np.array([1.0, 2.0, 3.0, 5.0, 4.0]), np.array([2.1, 2.9, 3.5, 4.4, np.nan])
+    rows = "".join(f"A,{one},{'' if np.isnan(other) else other}\n" for one, other in zip(x, T, strict=True))
+    report = loopsheet.load(readings(tmp_path / "r", f"lot,x [m],T [s]\n{rows}", code=code))
+    mean, total = np.nanmean(T), np.nansum(T)
+    y = {"T": T**2 / mean**2, "l": np.log(T / mean)}[observed[0]] if "sum" not in observed else T**2 / total
+    slope, _ = np.polyfit(x[:4], y[:4], 1)
+    assert np.ravel(report["b"].value) == pytest.approx([slope], rel=1e-12)
+    assert np.ravel(report["line_N1"].value) == pytest.approx([4])
+
+
 def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = "x [m],y [m]\n1,2.1\n2,3.9\n3,\n4,8.2\n,9\n6,12.1\n"
     main(["check", str(readings(tmp_path / "r", table, code=SUMS))])

@@ -16,8 +16,8 @@ class SameRows:
     """The columns of a method, of which the sums and counts that one result rests on leave out the same rows.
 
     Those are rows in which what one of them, or what is computed from them, asks for has no value. What rests
-    on a sum over these rows cannot be asked; groups can, whose values are sums over their own rows. As a sum
-    has one value, results that share it are of the same rows.
+    on one of these sums cannot be asked; groups can, whose values are sums over their own rows. As a sum has
+    one value, results that share it are of the same rows.
 
     Parameters
     ----------
@@ -68,10 +68,13 @@ class SameRows:
         groups = axis if isinstance(axis, GroupAxis) else None
         together = next(names for names in self._bound[groups] if total.name in names)
         if groups is None:
-            return {name for name in together if not self.sums & self.below[name]}
+            # What is named, too, where it rests on sums that are another result's: an observed over its mean.
+            named = {each.name for name in together for each in self.sheet.precedents(self.sheet[name])}
+            sums = self.sums & together
+            return {name for name in together | named if not sums & self.below[name]}
         # What these sums name on the groups, although their own rows are another result's.
-        sums = (self.sheet[name] for name in together if axis in self.over[name])
-        near = {each.name for column in sums for each in self.sheet.precedents(column)}
+        own_sums = (self.sheet[name] for name in together if axis in self.over[name])
+        near = {each.name for column in own_sums for each in self.sheet.precedents(column)}
         own = {groups.members, groups.members.of}
         below = {name: self.sums & self.below[name] for name in near}
         return {name for name, those in below.items() if all(self.over[each] <= own for each in those)}
