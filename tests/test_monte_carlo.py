@@ -203,6 +203,33 @@ def test_draws_that_lose_a_test_are_of_another_estimator(
     assert draw(report.inputs, report.values, budget, 10_000).lost == 0
 
 
+ROOTS = """from sympy import Rational, sqrt
+from loopsheet import Method, given, let
+
+class Roots(Method, source="own", headline="y z"):
+    "Roots of a number near zero."
+    a = given("1", "a number")
+    y = let(sqrt(a), "its root")
+    z = let(a ** Rational(3, 2), "another")
+"""
+
+
+@pytest.mark.parametrize(
+    ("a", "name", "lost"), [("0.010, u = 0.004", "y", 0.0062), ("0.01, u = 0.005", "z", 0.023)]
+)
+def test_a_draw_without_a_root_has_no_value(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], a: str, name: str, lost: float
+) -> None:
+    (tmp_path / "workbook.py").write_text(ROOTS, encoding="utf-8")
+    toml = f'workbook = "workbook.py"\n[parameters]\na = "{a}"\n[limits]\n{name} = ">= 0.0001"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).computed
+    found = draw(report.inputs, report.values, Spread(report.inputs, report.values).budget(name, 0), 100_000)
+    assert found.lost / 100_000 == pytest.approx(lost, rel=0.1)
+    assert main(["budget", name, str(tmp_path), "--draws", "10000"]) == 0
+    assert f"{name} conforms" in capsys.readouterr().out
+
+
 def test_a_number_that_is_exact_is_not_drawn(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["budget", "beta", "paper", "--draws", "1000"]) == 0
     assert capsys.readouterr().out == "beta = 1.5, exactly\n"

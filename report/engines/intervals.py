@@ -2,7 +2,8 @@
 
 Ends are rounded outwards. Sums, products, quotients and square roots are rounded correctly by the processor
 (IEEE 754), so that the neighbouring double encloses them; of exponentials and logarithms an error of
-4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain.
+4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain, and
+has no end on a side where the rest was left out.
 
 NumPy's functions accept these arrays, so that a generated program runs on them as it is.
 """
@@ -256,7 +257,8 @@ def _divide(a: Intervals, b: Intervals) -> Intervals:
 def _power(base: Intervals, exponent: Any) -> Intervals:
     if not isinstance(exponent, Intervals) and np.ndim(exponent) == 0 and float(exponent).is_integer():
         return _whole_power(base, int(exponent))
-    return _exp(_multiply(Intervals.of(exponent), _log(base)))
+    found = _exp(_multiply(Intervals.of(exponent), _log(base)))
+    return Intervals(np.where(base.low < 0, -np.inf, found.low), found.high)
 
 
 def _whole_power(base: Intervals, exponent: int) -> Intervals:
@@ -285,7 +287,7 @@ def _log(a: Intervals) -> Intervals:
 
 def _sqrt(a: Intervals) -> Intervals:
     found = _outwards(np.sqrt(np.maximum(a.low, 0.0)), np.sqrt(a.high))
-    return Intervals(np.maximum(found.low, 0.0), found.high)
+    return Intervals(np.where(a.low < 0, -np.inf, np.maximum(found.low, 0.0)), found.high)
 
 
 def _absolute(a: Intervals) -> Intervals:
