@@ -341,6 +341,37 @@ def test_a_group_may_hold_a_test_that_is_left_out(tmp_path: Path) -> None:
     assert spread.u("alpha")[1] > 0.01
 
 
+GAIN = """workbook = "workbook.py"
+[parameters]
+b = "-2.5 V, exact"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+V = "exact"
+[uncertainty.shared.gain]
+of = ["V", "b"]
+stated = "u = 1 % of reading"
+"""
+
+
+def test_a_gain_has_the_signs_of_its_readings(tmp_path: Path) -> None:
+    """One per cent more of all: a range is so much more, a mean, too, and a ratio is what it was."""
+    code = (
+        "from loopsheet import Method, given, let, mean, measured\n\nclass Gain(Method):\n    'Readings.'\n"
+    )
+    code += (
+        "    V = measured('V', 'reading')\n    b = given('V', 'other')\n    level = let(mean(V), 'mean')\n"
+    )
+    code += "    wide = let(max(V) - min(V), 'range')\n    ratio = let(max(V) / b, 'ratio')\n"
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    (tmp_path / "report.toml").write_text(GAIN, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("reading,V [V]\n1,10.0\n2,-5.0\n", encoding="utf-8")
+    report = Study(tmp_path).computed
+    spread = Spread(report.inputs, report.values)
+    assert [*spread.u("level"), *spread.u("wide")] == pytest.approx([0.025, 0.15], rel=1e-12)
+    assert spread.budget("ratio", 0).u == 0
+
+
 def test_second_order_of_correlated_errors(gauge_block: Callable[..., Spread]) -> None:
     """A correlation of next to nothing changes next to nothing; of a product of two it makes a square."""
     whole = gauge_block().budget("l", 0)

@@ -2,8 +2,8 @@
 
 Ends are rounded outwards. Sums, products, quotients and square roots are rounded correctly by the processor
 (IEEE 754), so that the neighbouring double encloses them; of exponentials and logarithms an error of
-4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain, and
-has no end on a side where the rest was left out.
+4 units in the last place is allowed for. An operation takes the part of an interval that lies in its domain,
+and has no end on a side where the rest was left out.
 
 NumPy's functions accept these arrays, so that a generated program runs on them as it is.
 """

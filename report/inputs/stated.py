@@ -99,6 +99,11 @@ class _Part:
         """What of the number itself its standard uncertainty is, or a part of that."""
         return float(self.relative / self.divisor) / DIVISORS[self.shape]
 
+    @property
+    def scales(self) -> bool:
+        """Whether it is a share of the number and nothing else: where cells share it, it has their signs."""
+        return bool(self.relative) and not self.absolute and not self.digits
+
     def of(self, printed: Printed, sample: str) -> Error:
         """The error of a number; what has no unit of its own has the number's."""
         size = self.absolute + self.relative * abs(printed.value) + self.digits * 2 * printed.half_unit

@@ -233,7 +233,9 @@ class Spread:
         first, second = self._variance(own), self._more(cells, own)
         computed = [not isinstance(self.values.sheet[name].rule, Given) for name, _ in cells]
         values = np.array([self.values.value[name][row] for name, row in cells])
-        noise = ROUNDED * np.minimum(1.0, ROUNDINGS * _largest(own != 0, self._shares))
+        largest = _largest(own != 0, self._shares)
+        largest = np.where(largest > 0, largest, self._shares.max())  # of second order alone: of any
+        noise = ROUNDED * np.minimum(1.0, ROUNDINGS * largest)
         with np.errstate(all="ignore"):
             least = np.maximum(np.abs(noise * np.where(computed, values, 0.0)), self._creeping(cells))
             little = first + np.nan_to_num(second) <= np.square(least)

@@ -32,7 +32,7 @@ from ..result.verdict import OTHERWISE, UNEXPECTED
 from ..sheet import Column, Given, Iterated, Root
 from .compact import short_cells, short_script
 from .live_files import given
-from .live_uncertain import digits, errors, uncertain
+from .live_uncertain import decided, digits, errors, uncertain
 from .writer import TEMPLATES
 
 ALONE = ("random.js", "sensitivities.js", "second_order.js")
@@ -117,6 +117,7 @@ def data(report: Report, document: Material) -> str:
         "columns": {column.name: _least(_column(report, document, column)) for column in sheet.columns},
         **given(report),
         **uncertain(report),
+        "decided": decided(report),
         "headline": [
             (name, index_text(label))
             for name in report.workbook.headline

@@ -8,10 +8,11 @@ from typing import Any
 
 from ..cells.address import index_text
 from ..cells.layout import how_large
-from ..distribution import DIVISORS, SCATTER, Error, Shape
+from ..distribution import DIVISORS, LEVEL, SCATTER, Error, Shape
 from ..quantity import Printed, there
 from ..result.numbers import order
 from ..result.result import Report
+from ..result.uncertain import Conformity
 from ..sheet import Column, RepeatAxis
 
 FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE})
@@ -36,6 +37,26 @@ def follows(report: Report) -> bool:
     weighs = any(stated.is_of_readings(of) for of in sheet.weighed.values())
     known = not (weighs or report.inputs.taken) and FOLLOWED.issuperset(told)
     return known and len(numbers) * how_large(sheet, report.values.layouts) <= LARGEST
+
+
+def decided(report: Report) -> list[dict[str, Any]]:
+    """The cells on which a rule decides, with their limits in SI; those that only a build decides say so.
+
+    The page knows U for one level.
+    """
+
+    def told(found: Conformity) -> dict[str, Any]:
+        limits, rule = found.limits, found.limits.guard
+        ends = [float(end.value) if end else None for end in (limits.low, limits.high)]
+        of = [limits.cell[0], index_text(limits.cell[1])]
+        entry: dict[str, Any] = {"cell": found.budget.cell, "of": of, "ends": ends}
+        if rule.width is not None:
+            return entry | {"width": float(rule.width.value)}
+        if not rule.times:
+            return entry
+        return entry | ({"times": float(rule.times)} if rule.level == LEVEL else {"times": 1, "build": 1})
+
+    return [told(found) for found in (report.uncertain().conformities if report.inputs.limits else ())]
 
 
 def scatters(report: Report) -> bool:

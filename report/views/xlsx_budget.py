@@ -231,8 +231,9 @@ class _Written:
             told = f"{'-' * (size < 0)}SUM({grid[ways[0].first].place.range()})"
         else:
             terms = [
-                f"{'+' if u > 0 else '-'}{text}{'' if source.u else self.times(source, own, row, u)}"
+                f"{sign}{text}{times}"
                 for own, row, u in source.moves
+                for sign, times in [self.times(source, own, row, u)]
                 for text in self.products(own, row)
             ]
             told = "".join(terms).removeprefix("+")
@@ -245,12 +246,17 @@ class _Written:
         """The products that the derivatives by each given column are made of."""
         return self.grid.slopes.get(self.budget.name, {})
 
-    def times(self, source: ErrorSource, name: str, row: int, u: float) -> str:
-        """The factor that is a standard uncertainty in SI, of an error that is not as large in all cells."""
-        cell = self.grid[checked(name)].place.cell(row)
-        told = self.of_share(source, name, float(self.report.values.value[name][row]), u, cell)
+    def times(self, source: ErrorSource, name: str, row: int, u: float) -> tuple[str, str]:
+        """The sign of an error in a cell, and its standard uncertainty in SI as a factor, if they differ."""
+        sign = "+" if u > 0 else "-"
+        if source.u:
+            return sign, ""
+        value, cell = float(self.report.values.value[name][row]), self.grid[checked(name)].place.cell(row)
         unit = factors(self.grid[name].place.scale)[0]
-        return f"*({told}){unit}" if told else f"*{Decimal(repr(abs(u))):f}"
+        if told := self.of_share(source, name, value, u, f"N({cell})", gains=True):
+            return "+", f"*({told}){unit}"
+        told = self.of_share(source, name, value, u, f"ABS(N({cell}))")
+        return sign, f"*({told}){unit}" if told else f"*{Decimal(repr(abs(u))):f}"
 
     def products(self, name: str, row: int) -> Iterator[str]:
         """What is added to the derivative by a row of a given column."""
@@ -292,17 +298,24 @@ class _Written:
         name, *_ = source.moves[0]
         if not source.u or each.estimate is None:
             return ""
-        told = self.of_share(source, name, each.estimate, source.u, f"B{row + 1}")
+        told = self.of_share(source, name, each.estimate, source.u, f"ABS(N(B{row + 1}))")
         return told and f"={told}"
 
-    def of_share(self, source: ErrorSource, name: str, value: float, u: float, cell: str) -> str:
-        """The formula of a standard uncertainty in the unit of a cell, of which it is a share."""
+    def of_share(
+        self, source: ErrorSource, name: str, value: float, u: float, size: str, gains: bool = False
+    ) -> str:
+        """The formula of a standard uncertainty in the unit of a cell, of which it is a share.
+
+        `size`: of the cell; of a gain, which an error is that is nothing else, with its sign.
+        """
         block = self.grid[name]
         said = self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
         if not (said and said.parts[0].share and not block.place.zero):
             return ""
+        if gains and not said.parts[0].scales:
+            return ""
         scale = float(block.place.scale)
-        return share_of(said.parts[0].share, value, abs(u), f"ABS(N({cell}))", scale, scale)
+        return share_of(said.parts[0].share, value, abs(u), size, scale, scale)
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""

@@ -231,7 +231,9 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   let names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell));
   if (!head) {
     // Rows as they stand in the file, or numbers of rows before what stands here; in which order, no head tells.
-    const numbered = width > names.length && new Set(first).size === rows.length && first.every((text) => labels.includes(text));
+    const added = nextLabel(state, axis), news = first.filter((text) => !labels.includes(text)), wide = width > names.length;
+    const numbered = wide && new Set(first).size === rows.length && news.every((text, n) => text === String(added + n));
+    if (wide && !numbered && rows.length > 1 && first.every((text, n) => /^[0-9]+$/.test(text) && Number(text) === Number(first[0]) + n)) return `Nothing was pasted: it begins with numbers of rows (${first[0]} …) that are not here.`;
     const whole = numbered && width === file.length;
     const there = file.filter((name) => LIVE.columns[name] || (!whole && /^u\(/.test(name))), at = whole ? 0 : there.indexOf(cell);
     if ((whole ? inputs : names.slice(0, width)).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
@@ -242,8 +244,9 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   const at = names.indexOf("");
   let rowsLost = 0;
   for (const [down, fields] of rows.entries()) {
-    const place = labels.indexOf(at < 0 ? index : read(fields[at])) + (at < 0 ? down : 0);
-    const test = tests[place] ?? (place < 0 || isGrouped(axis) ? null : newTest(state, axis)); // of no group
+    const label = at < 0 ? index : read(fields[at]), place = labels.indexOf(label) + (at < 0 ? down : 0);
+    const isNew = at < 0 ? place >= 0 : label === String(nextLabel(state, axis));
+    const test = tests[place] ?? (isNew && !isGrouped(axis) ? newTest(state, axis) : null); // of no group
     if (!test) rowsLost += 1;
     for (const [n, text] of test ? fields.entries() : []) {
       const name = names[n], word = LIVE.tables[axis].texts[test.label]?.[name];

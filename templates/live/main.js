@@ -74,10 +74,12 @@ function removeTest(table, label) {
 }
 
 // Its number is none that another had before: what was said of that one is not said of it.
-function newTest({ tables }, axis) {
-  const { rows } = LIVE.tables[axis], label = Math.max(0, ...[...rows, ...tables[axis]].map((test) => test.label)) + 1;
+const nextLabel = ({ tables }, axis) => Math.max(0, ...[...LIVE.tables[axis].rows, ...tables[axis]].map((test) => test.label)) + 1;
+
+function newTest(state, axis) {
+  const { rows } = LIVE.tables[axis], label = nextLabel(state, axis);
   const test = { label, used: true, reason: "", cells: Object.fromEntries(Object.keys(rows[0].cells).map((name) => [name, ""])) };
-  tables[axis].push(test);
+  state.tables[axis].push(test);
   return test;
 }
 
@@ -128,6 +130,7 @@ function writePage(look, last) {
   writePublished(look);
   writeUncertain(look);
   writeVerdicts(look);
+  writeDecided(look);
   writeFigures(look);
 }
 

@@ -9,12 +9,13 @@ const carlo = { worker: null, timer: 0, look: null, found: {}, refused: false };
 
 const draws = (look, name, row) => LIVE.shared && row >= 0 && look.trace.isOk(name, row) && !look.sure.lacking(name, row) && axisNamed(look.trace.declared[name].axis)?.kind !== "repeat" && !LIVE.columns[name].given;
 
-// Every cell that is to be drawn: after an edit the results, and the one in the bar. Of all results it is asked whether
-// second order counts.
+// Every cell that is to be drawn: after an edit the results, and the one in the bar. Of all results,
+// and of what U decides on, it is asked whether second order counts.
 function cellsToDraw(look) {
-  const results = isEdited() ? LIVE.headline.map(([name, index]) => [name, look.trace.row(name, index)]) : [], own = [bar.name, look.trace.row(bar.name, bar.index)];
-  const some = (cells) => cells.filter(([name, row]) => draws(look, name, row));
-  return { looked: some([...results, own]).filter((cell) => !(cell in look.sure.more)), cells: some([...(page.panel ? results.slice(0, MOST_DRAWN) : []), own]).filter((cell) => !carlo.found[cell]) };
+  const rowsOf = (cells) => (isEdited() ? cells : []).map(([name, index]) => [name, look.trace.row(name, index)]), results = rowsOf(LIVE.headline), own = [bar.name, look.trace.row(bar.name, bar.index)];
+  const some = (cells) => [...new Map(cells.map((cell) => [String(cell), cell])).values()].filter(([name, row]) => draws(look, name, row));
+  const ruled = rowsOf(LIVE.decided.filter(({ times }) => times).map(({ of }) => of));
+  return { looked: some([...results, ...ruled, own]).filter((cell) => !(cell in look.sure.more)), cells: some([...(page.panel ? results.slice(0, MOST_DRAWN) : []), own]).filter((cell) => !carlo.found[cell]) };
 }
 
 // Draws what was not drawn yet, soon; what was begun for another state ends.
@@ -79,7 +80,7 @@ function toldBy(sorted) {
 function tellDraws(look, more) {
   if (look !== page.look) return;
   const { name, index } = bar, row = look.trace.row(name, index);
-  if (isEdited() && more) writeUncertain(look);
+  if (isEdited() && more) [writeUncertain, writeDecided].forEach((write) => write(look));
   if (row >= 0 && more) {
     byId("bar-sure").hidden = true;
     fillSure(look, name, row);

@@ -93,6 +93,7 @@ function makeAround() {
   page.stale = parts.map(([place, what]) => {
     const word = make("p", { class: "stale", hidden: true }, what ? `This ${what} is as issued, before the edits.` : "This browser tells U by first order alone: a build says where the second counts.");
     word.alone = !what;
+    if (what === "decision") word.append((page.decided = make("span")));
     place.after(word);
     return word;
   });

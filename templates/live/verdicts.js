@@ -1,5 +1,5 @@
 // Sentences that judge a sum of squares: their probability follows an edit while they say what is so, and else they say
-// that they no longer do. What no script can compute again says that it is as issued.
+// that they no longer do. So do decisions on limits. What no script can compute again says that it is as issued.
 
 // How likely a sum of squares is at least, and at most, so large, of so many independent standard normal numbers: from
 // one or two of them on, every two more add a term.
@@ -48,4 +48,25 @@ function writeVerdicts(look) {
     }
     note.prepend(stale("As issued, before the edits: "));
   }
+}
+
+// --- limits ----------------------------------------------------------------------------------------------
+
+// What is decided on a cell with limits (JCGM 106, 8), as a build decides it: by U of first order where second order does
+// not count. Nothing until a worker has looked at that, and where only a build can tell.
+function decided(look, { of: [name, index], ends: [low, high], times = 0, width, build }) {
+  const row = look.trace.row(name, index);
+  if (row < 0 || !look.trace.isOk(name, row)) return "has no value: no decision";
+  const value = look.trace.sheet.value[name][row], [least, most] = [low ?? -Infinity, high ?? Infinity];
+  if (value < least || value > most) return "does not conform";
+  if (times && !LIVE.shared) return "";
+  const more = times ? look.sure.more[[name, row]] : 0, u = times && look.sure.u(name, row);
+  const guard = width ?? (u && times * look.sure.budget(name, row).factor * u);
+  if (build || (u && more !== 0) || Number.isNaN(guard)) return more === undefined && u > 0 && !carlo.refused ? "…" : "";
+  return least + guard <= value && value <= most - guard ? "conforms" : least + guard > most - guard ? "no decision: the guard bands meet" : "lies in the guard band: no decision";
+}
+
+function writeDecided(look) {
+  const told = LIVE.decided.flatMap((rule, n) => [n ? "; " : " With them: ", make("code", {}, rule.cell), ` ${decided(look, rule) || "is decided by a build"}`]);
+  page.decided?.replaceChildren(...told, ".");
 }

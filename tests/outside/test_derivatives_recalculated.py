@@ -218,6 +218,18 @@ class Order(Method, headline="typical low swing wide skew"):
 """
 PAIRS = "reading,instrument,x [1],y [mm]\n1,A,1.0,{}\n2,B,1.5,2.25\n3,A,2.2,1.75\n4,B,1.1,2.20\n"
 PAIRS += "5,A,1.6,1.62\n6,B,2,3.1\n"
+POLES = """from loopsheet import Method, given, let, mean, measured
+
+
+class Poles(Method, headline="apart level by_b"):
+    V = measured("V", "of both polarities")
+    b = given("V", "another")
+    level = let(mean(V), "mean")
+    apart = let(max(V) - min(V), "range")
+    by_b = let(level / b, "by another")
+"""
+GAIN = '[uncertainty]\nV = "u = 0.01"\n[uncertainty.shared.gain]\nof = ["V", "b"]\n'
+GAIN += 'stated = "u = 1 % of reading"\n'
 NEAR_A_LINE = "reading,instrument,x [1],y [mm]\n1,A,1.0,{}\n2,B,1.5,1.93\n3,A,2.2,2.31\n4,B,1.1,1.70\n"
 NEAR_A_LINE += "5,A,1.6,1.95\n6,B,2,2.22\n"
 READINGS = "reading,instrument,y [mm]\n1,A,{}\n2,B,2.25\n3,A,1.75\n4,B,2.20\n5,A,1.62\n"
@@ -256,6 +268,10 @@ CASES = {
     "results of groups of fewer": Case(INSTRUMENTS, "B,1.5,2.25", "B,1.5,", {("y", 1): None}, moves=20),
     "orders of groups": Case(RANKED, "2,1.60", "2,1.70", {("y", 6): 1.70}, moves=10),
     "orders of groups of fewer": Case(RANKED, "1.6,1.62", "1.6,", {("y", 4): None}, moves=10),
+    "a gain": Case(
+        method(POLES, "reading,V [V]\n1,10.0\n2,-5.0\n3,2.0\n", 'b = "-3.00 V, u = 0.02"\n', GAIN),
+        "1,10.0", "1,-9.0", {("V", 0): -9.0},
+    ),
     "digits of other sizes": Case(
         method(SIZES, "reading,V [mV]\n1,1.00\n", 'h = "4.17 mm, u = 7 % of reading"\n', CERTAIN),
         '"4.17', '"0.0128', {("h", 0): 0.0128}, moves=0,

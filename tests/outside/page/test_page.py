@@ -470,6 +470,30 @@ def test_a_column_of_the_rows_numbers_is_known(open_page: Open, tmp_path: Path) 
     assert driving.differences(live.cells(), report.values) == []
 
 
+@pytest.mark.parametrize("head", ["", "test\tv\te\tx_p\n"])
+@pytest.mark.parametrize("first", [1, 5, 6])
+def test_rows_are_added_whose_numbers_come_next(
+    open_page: Open, tmp_path: Path, first: int, head: str
+) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    rows = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
+    rows[7] = {"v": "5.9", "e": "0.43", "x_p": "60.6"}
+    live.input("v", min(first, 5)).click()
+    block = "".join("\t".join((str(n), *row.values())) + "\n" for n, row in rows.items() if n >= first)
+    live.paste(head + block)
+    assert live.text("live-note") == ""
+    assert driving.differences(live.cells(), driving.built(tmp_path / "folder", rows).values) == []
+
+
+def test_numbers_of_rows_that_are_not_here_are_no_measurements(open_page: Open) -> None:
+    live = open_page(permissions=["clipboard-read", "clipboard-write"])
+    live.input("v", 1).click()
+    live.paste("101\t2.1\t0.5\t24.1\n102\t2.2\t0.5\t25.1\n")
+    said = "it begins with numbers of rows (101 …) that are not here."
+    assert live.text("live-note") == f"Nothing was pasted: {said}"
+    assert live.text("live-banner") == ""
+
+
 @pytest.mark.parametrize(
     ("block", "said"),
     [

@@ -287,3 +287,43 @@ def test_what_an_edit_leaves_of_an_uncertainty_is_struck_out(open_page: Open, tm
     assert "as issued" in note.inner_text()
     live.click("live-reset")
     assert (told.evaluate(style), note.is_visible()) == ("none", False)
+
+
+POLES = """from loopsheet import Method, given, let, mean, measured
+
+
+class Poles(Method, headline="apart level by_b"):
+    V = measured("V", "of both polarities")
+    b = given("V", "another")
+    level = let(mean(V), "mean")
+    apart = let(max(V) - min(V), "range")
+    by_b = let(level / b, "by another")
+"""
+GAIN = """workbook = "workbook.py"
+[parameters]
+b = "-3.00 V, u = 0.02"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+V = "u = 0.2 % of reading"
+[uncertainty.shared.gain]
+of = ["V", "b"]
+stated = "u = 1 % of reading"
+"""
+
+
+def test_a_gain_has_the_sign_of_what_is_typed(open_page: Open, tmp_path: Path) -> None:
+    def folder(first: str) -> Path:
+        made = tmp_path / first
+        made.mkdir()
+        (made / "workbook.py").write_text(POLES, encoding="utf-8")
+        (made / "report.toml").write_text(GAIN, encoding="utf-8")
+        (made / "measurements.csv").write_text(f"reading,V [V]\n1,{first}\n2,-5.00\n", encoding="utf-8")
+        build(Study(made), made / "out", ("html",))
+        return made / "out" / "report.html"
+
+    live = open_page(folder("10.00"))
+    live.type("V", 1, "-9.00")
+    fresh = open_page(folder("-9.00"))
+    live.wait_for_draws()
+    assert uncertain(live) == uncertain(fresh)

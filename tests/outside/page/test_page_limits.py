@@ -1,0 +1,98 @@
+"""Decisions on limits, which follow an edit of the page as far as first order tells U."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from driving import Live
+
+from loopsheet.report.build import build
+from loopsheet.report.study import Study
+
+METHOD = """
+from loopsheet import Method, given, let, mean, measured
+
+class Density(Method, headline="rho_mean"):
+    "Density of a liquid by weighing."
+    m = measured("g", "mass", positive=True)
+    V = given("cm^3", "volume", positive=True)
+    rho = let(m / V, "density", "g/cm^3")
+    rho_mean = let(mean(rho), "mean density", "g/cm^3")
+    water = given("g/cm^3", "density of water")
+    off = let((rho_mean - water) ** 2, "square of how far it is from water", "kg^2/m^6")
+"""
+TOML = """title = "Density"
+workbook = "workbook.py"
+
+[parameters]
+V = "{V}"
+water = "1.000 g/cm^3, exact"
+
+[measurements]
+file = "measurements.csv"
+
+[uncertainty]
+m = "u = 0.02 g"
+
+[limits]
+rho_mean = "0.990 .. 1.010 g/cm^3"
+"rho[1]" = "0.990 .. 1.010 g/cm^3, guard = U"
+"rho[2]" = ">= 0.990 g/cm^3, guard = 0.8 U"
+"rho[3]" = "<= 1.010 g/cm^3, guard = 0.004 g/cm^3"
+"rho[4]" = "0.990 .. 1.010 g/cm^3, guard = U, level = 99 %"
+"rho[5]" = "0.999 .. 1.001 g/cm^3, guard = U"
+off = "<= 100 kg^2/m^6, guard = U"
+"""
+
+
+def folder_of(at: Path, masses: str, volume: str) -> Path:
+    at.mkdir()
+    (at / "workbook.py").write_text(METHOD)
+    (at / "report.toml").write_text(TOML.replace("{V}", volume))
+    rows = "".join(f"{n},{mass}\n" for n, mass in enumerate(masses.split(), 1))
+    (at / "measurements.csv").write_text(f"test,m [g]\n{rows}")
+    return at
+
+
+def told(live: Live) -> dict[str, str]:
+    """What the page decides now, by cell."""
+    live.wait_for_draws()
+    line = live.page.locator("main .decided + p.stale").text_content() or ""
+    _, _, now = line.rstrip(".").partition("With them: ")
+    return dict(one.split(" ", 1) for one in now.split("; "))
+
+
+def rebuilt(folder: Path) -> dict[str, str]:
+    """What a build decides."""
+    found = Study(folder).report.uncertain().conformities
+    return {each.budget.cell: str(each.decision) for each in found}
+
+
+@pytest.mark.parametrize(
+    ("edits", "masses", "volume"),
+    [
+        ({1: "9.92"}, "9.92 10.00 10.00 10.00 10.00", "10.00(2) cm^3"),
+        ({1: "9.95", 2: "9.95", 3: "10.07"}, "9.95 9.95 10.07 10.00 10.00", "10.00(2) cm^3"),
+        ({1: "10.2", 4: "10.2", 5: "10.2"}, "10.2 10.00 10.00 10.2 10.2", "10.00(2) cm^3"),
+        ({1: "9.91", 2: "9.92", 3: "10.05"}, "9.91 9.92 10.05 10.00 10.00", "10.00(2) cm^3"),
+        ({"V": "10.09"}, "10.00 10.00 10.00 10.00 10.00", "10.09(2) cm^3"),
+        ({"V": "9.85"}, "10.00 10.00 10.00 10.00 10.00", "9.85(2) cm^3"),
+    ],
+)
+def test_decisions_are_those_of_a_build(
+    open_page: Callable[..., Live], tmp_path: Path, edits: dict[int | str, str], masses: str, volume: str
+) -> None:
+    folder = folder_of(tmp_path / "issued", "10.00 10.00 10.00 10.00 10.00", "10.00(2) cm^3")
+    build(Study(folder), folder / "out", ("html",))
+    live = open_page(folder / "out" / "report.html")
+    for row, text in edits.items():
+        live.type(*(("V", "") if row == "V" else ("m", row)), text)
+    now, again = told(live), rebuilt(folder_of(tmp_path / "again", masses, volume))
+    assert now.keys() == again.keys()
+    for cell, word in now.items():
+        if word != "is decided by a build":
+            assert again[cell] in word, cell
+    assert now["rho[4]"] in ("is decided by a build", "does not conform")
+    assert {cell for cell, word in now.items() if word == "is decided by a build"} <= {"rho[4]", "off"}
