@@ -20,6 +20,8 @@ NOTHING = Facts()
 
 _LARGEST = 3000
 """Operations. The largest that the paper needs has 1300."""
+_MOST_TIMES = 16
+"""An angle, in a function that is written by the tangent of half of it."""
 
 
 @dataclass(frozen=True)
@@ -312,7 +314,10 @@ def _in_half_angles(expression: sp.Expr) -> Any:
 
     What holds of these but where a tangent has no value holds there too, as both sides go on smoothly.
     """
-    if not expression.has(sp.sin, sp.cos) or expression.count_ops() > _LARGEST:
+    angles = {term for each in expression.atoms(sp.sin, sp.cos) for term in sp.Add.make_args(each.args[0])}
+    # Of n times an angle it is a polynomial of degree n: of a bound of 90 degrees n may have fifty digits.
+    many = any(abs(term.as_coeff_Mul(rational=True)[0]) > _MOST_TIMES for term in angles)
+    if not angles or many or expression.count_ops() > _LARGEST:
         return expression
     halved: sp.Expr = sp.expand_trig(expression)
     for angle in sorted({each.args[0] for each in halved.atoms(sp.sin, sp.cos)}, key=str):

@@ -6,9 +6,9 @@ from inspect import unwrap
 from pathlib import Path
 
 import pytest
-from sympy import sqrt
+from sympy import exp, sqrt
 
-from loopsheet import Method, derivative, given, let, load, mean, measured, pairs, root, total, unknown
+from loopsheet import Method, derivative, fit, given, let, load, mean, measured, pairs, root, total, unknown
 from loopsheet.report.column import SheetError
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.study import Study
@@ -103,6 +103,9 @@ def test_what_a_derivative_is_taken_of_and_by() -> None:
         ):
             with pytest.raises(SheetError, match=told):
                 refused(formula, by)
+        scale, size = unknown("scale", "mm", start=1, positive=True), unknown("size", start=1)
+        line = fit(b, size * scale * exp(a / scale))
+        assert derivative(size * exp(K * size), K) == size**2 * exp(K * size)
         q = root(q**2, K, "q", low=0, high=9)
         with pytest.raises(SheetError, match="not by a formula of one row"):
             refused(q * K, K)

@@ -110,6 +110,14 @@ def test_angles_and_their_halves_are_known(left: Expr, right: Expr, wrong: Expr)
     assert decide(claim(left, right * (1 + Rational(1, 10**30)))).status is ProofStatus.REFUTED
 
 
+def test_an_angle_is_not_written_by_a_hundredth_of_it() -> None:
+    """A bound in degrees has a pi of fifty digits: so many times an angle is a polynomial of that degree."""
+    angle = a * (10**49 + 1) / (10**49 * (a + 1))
+    found = decide(claim(sqrt(1 - sin(angle) ** 2), cos(angle)))
+    assert found.status is not ProofStatus.REFUTED
+    assert decide(claim(sin(2 * angle), 2 * sin(angle) * cos(angle))).status is ProofStatus.PROVED
+
+
 @pytest.mark.parametrize(
     ("premises", "claimed"),
     [

@@ -286,11 +286,12 @@ def _enclosed(text: str) -> str:
 
 
 def _digits(number: int) -> str:
-    """A whole number, in digits that every reader takes for what they are."""
+    """A whole number, in digits that every reader takes for what they are: of many, those of a double."""
     text = str(number)
-    short = text.rstrip("0")
     if len(text) <= _EXACT_DIGITS:
         return text
-    if len(short) > _EXACT_DIGITS:
-        raise NotPrintable(f"{number} has more digits than a spreadsheet reads")
-    return f"({short}*(10)^({len(text) - len(short)}))"
+    told = []
+    for first in (0, _EXACT_DIGITS):
+        if part := text[first : first + _EXACT_DIGITS].rstrip("0"):
+            told.append(f"{int(part)}*(10)^({len(text) - first - len(part)})")
+    return f"({'+'.join(told)})"

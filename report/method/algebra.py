@@ -44,7 +44,7 @@ def derivative(body: MethodBody, formula: Expr, by: Expr) -> Expr:
     def other() -> list[Expr]:
         return [cell for cell in _cells(body, found) if name_of(cell) != name]
 
-    while resting := [cell for cell in other() if _rests(body, cell, name)]:
+    while resting := [cell for cell in other() if name in _reached(body, name_of(cell))]:
         for cell in resting:
             column = body.columns.get(name_of(cell))
             rule = None if column is None else column.rule
@@ -70,15 +70,19 @@ def _cells(body: MethodBody, formula: Basic) -> list[Expr]:
     return sorted({each.cell for each in body.named_in(formula)}, key=str)
 
 
-def _rests(body: MethodBody, cell: Expr, on: str) -> bool:
-    """Whether a cell is computed from what a name stands for."""
-    own = name_of(cell)
-    return own == on or any(_rests(body, each, on) for each in _below(body, own))
+def _reached(body: MethodBody, name: str) -> set[str]:
+    """A name and all that it rests on, by whatever steps: those of a fit go round."""
+    found, ahead = {name}, [name]
+    while ahead:
+        more = {name_of(each) for each in _below(body, ahead.pop())} - found
+        found |= more
+        ahead += sorted(more)
+    return found
 
 
 def _inputs(body: MethodBody, name: str) -> set[str]:
     """What a name rests on that nothing computes."""
-    return set[str]().union(*(_inputs(body, name_of(each)) for each in _below(body, name))) or {name}
+    return {each for each in _reached(body, name) if not _below(body, each)}
 
 
 def _below(body: MethodBody, name: str) -> list[Expr]:
