@@ -152,6 +152,34 @@ def test_the_unit_of_a_result_must_fit_its_formula() -> None:
             A = let(x**2, "area", "mm")
 
 
+@pytest.mark.parametrize(
+    ("formula", "unit"),
+    [
+        ("mean(share)", "%"),
+        ("mean(share) - e", "%"),
+        ("2 * mean(share) / 3", "%"),
+        ("max(share) - min(share)", "%"),
+        ("median(share) + sum(share)", "%"),
+        ("share - mean(share)", "%"),
+        ("mean(M) / 2", "deg"),
+        ("1 - mean(share)", "1"),
+        ("mean(share) * e", "1"),
+        ("mean(share**2)", "1"),
+        ("sin(M)", "1"),
+        ("M * share", "1"),
+        ("M - mean(share)", "1"),
+    ],
+)
+def test_what_adds_up_per_cents_is_in_per_cent(tmp_path: Path, formula: str, unit: str) -> None:
+    code = WORKBOOK.replace("given, let, mean,", "count, given, let, mean, median,").replace(
+        "    F = let(",
+        f'    share = measured("%", "a share")\n    W = let({formula}, "a number")\n    F = let(',
+    )
+    folder(tmp_path, header="place,M [deg],a [mm],share [%]", code=code)
+    (tmp_path / "measurements.csv").write_text("place,M [deg],a [mm],share [%]\n1,5,4,55\n2,18,1,57\n")
+    assert (Study(tmp_path).computed.shown["W"].unit or "1") == unit
+
+
 @pytest.mark.parametrize("unit", ["deg", "arcsec", "mm^(3/2)"])
 @pytest.mark.parametrize("end", [0.1, 7, 90, 180, -33.3])
 def test_an_end_that_is_no_double_still_allows_itself(unit: str, end: float) -> None:

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 
-from sympy import Basic, Expr, Indexed, sstr
+from sympy import Add, Basic, Expr, Indexed, Mul, Sum, Symbol, sstr
 
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
+from ...derivations.reductions import OrderStatistic
 from ...derivations.unit_text import well_named
 from ...derivations.vocabulary import NO_WORDS
 from ..column import written_in
@@ -161,17 +163,37 @@ def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:
 def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
     """A column with the unit that its formula gives, and shown as what of that kind it is computed from.
 
-    Where that is shown in several units it is shown in SI; so is a pure number: a sine is no angle.
+    Where that is shown in several units it is shown in SI; so is a pure number, as a sine is no angle, unless
+    it is a number of times such a column: a mean or a difference of per cents.
     """
     column = replace(column, unit=named_unit_of({**columns, column.name: column}, column))
     own = dict(dimension_of_unit(column.unit))
-    if column.display or not own:
+    if column.display:
         return column
     assert isinstance(column.rule, Formula)
-    named = {str(symbol) for symbol in column.rule.expression.free_symbols}
+    formula = column.rule.expression
+    named = {str(symbol) for symbol in formula.free_symbols}
     alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
+    if not own and not _is_times(formula, {each.name for each in alike}):
+        return column
     shown = {written_in(each, columns) for each in alike}
     return replace(column, display=f"like {alike[0].name}") if len(shown) == 1 else column
+
+
+def _is_times(formula: Expr, names: AbstractSet[str]) -> bool:
+    """Whether a formula adds up, or takes over rows, numbers of times such columns."""
+    match formula:
+        case Symbol() | Indexed():
+            return name_of(formula) in names
+        case Add():
+            return all(_is_times(term, names) for term in formula.args)
+        case Sum() | OrderStatistic():
+            return _is_times(formula.function, names)
+        case Mul():
+            rest = [factor for factor in formula.args if not _is_times(factor, names)]
+            counts = all(symbol.is_integer for factor in rest for symbol in factor.free_symbols)
+            return counts and len(rest) == len(formula.args) - 1
+    return False
 
 
 def _kind(column: Column) -> dict[str, object] | None:
