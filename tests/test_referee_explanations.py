@@ -274,6 +274,46 @@ def test_transposed_digits_of_an_input_come_first() -> None:
     assert sorted(first(of).also) == ["1.75", "1.76"]
 
 
+def of_an_angle(x: str, published: str) -> Referee:
+    """Of a sine in degrees, and of what it is the reciprocal of."""
+    angle, names = Column("x", ROWS, Given(), "1", "deg", positive=False), ("sine", "cosecant")
+    sine, other = (
+        Column(name, ROWS, formula(name, sin(X[k]) ** power), positive=False)
+        for name, power in zip(names, (1, -1), strict=True)
+    )
+    table = [
+        PublishedValue("Table", name, (row,), pure(text))
+        for name, line in zip(names, published.split(","), strict=False)
+        for row, text in enumerate(line.split(), 1)
+    ]
+    given = [printed_in("deg", text) for text in x.split()]
+    return found(Sheet((angle, sine, other)), {"x": given}, table)
+
+
+def test_so_many_turns_explain_nothing() -> None:
+    """A million times an angle, in its printed digits, has any sine."""
+    told = of_an_angle("23.0 41.0", "0.5299 0.6561")
+    assert first(told).would_print == "32.0"
+    assert {change.kind for each in told.explanations for change in each.changes} == {"misprint"}
+
+
+def test_a_slip_is_found_at_another_root_than_the_nearest() -> None:
+    """0.4620 is the sine of 27.52 and of 152.48 degrees: only the first is a digit from what is printed."""
+    told = of_an_angle("22.52 41.00", "0.4621 0.6561,2.1642 1.5243")
+    assert first(told).would_print == "27.52"
+
+
+def test_all_slips_that_explain_it_are_told() -> None:
+    """(x - 5)^2 is that of 2.8 and of 7.2; 2.7 is a digit from the one, and two from the other."""
+    square = Column("square", ROWS, formula("square", (X[k] - 5) ** 2), positive=False)
+    value = [
+        PublishedValue("Table", "square", (row,), pure(text)) for row, text in ((1, "4.840"), (2, "1.00"))
+    ]
+    told = found(Sheet((X, square)), {"x": [pure("2.7"), pure("4.0")]}, value)
+    change = next(each.first for each in told.explanations if each.first.kind == "misprint")
+    assert (change.would_print, change.also) == ("2.8", ("7.2",))
+
+
 def test_two_misprints_are_the_smallest_set_without_which_the_rest_comes_out() -> None:
     of = said("1.310 1.770 2.830 3.370", square="1.716 3.331 8.009 11.537")
     assert {one[1] for each in changes(of) for one in each} == {"square", "x"}

@@ -197,10 +197,45 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
             assert isinstance(found, Best)
             point = found.point
         told = _told(cell, problem, problem.box, point)
+        if cell.given:
+            told = _with_slips(problem, cell, told)
         if told is None:
             search.drop(certain=False)
         else:
             yield search.explained([told.change], told.problem, told.box, told.best)
+
+
+def _with_slips(problem: Problem, cell: _Cell, told: _Told | None) -> _Told | None:
+    """The same with the slips that explain it as well from elsewhere: what is sought may have several roots.
+
+    A slip stands before any other way to print a given cell.
+    """
+    near = {told.change.would_print, *told.change.also} if told else set[str]()
+    if told and told.change.span:
+        ends = [
+            moved(cell.printed, Fraction(end) * cell.printed.scale + cell.printed.zero)
+            for end in told.change.span
+        ]
+        near |= {respelt(cell.printed, units).text for units in range(min(ends), max(ends) + 1)}
+    ways = [units for units in _slips_of(cell, np.array([])) if respelt(cell.printed, units).text not in near]
+    if not ways:
+        return told
+    points = problem.restarted(np.stack([_at(problem, cell, units) for units in ways]))
+    left = _off(problem, points).max(axis=1)
+    others = [ways[n] for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS][:LOOKED_INTO]
+    found = [
+        units
+        for units in others
+        if best(*cell.reprinted(problem, problem.box, units), until=1.0).mismatch <= 1
+    ]
+    if not found:
+        return told
+    if told is None or not is_slip(cell.printed.text, told.change.would_print):
+        told = _told(cell, problem, problem.box, _at(problem, cell, found[0]), found.pop(0)) or told
+    if told is None or not found:
+        return told
+    also = *told.change.also, *(respelt(cell.printed, units).text for units in found)
+    return replace(told, change=replace(told.change, also=also))
 
 
 def freed(search: Search, problem: Problem, n: int) -> Array | None:
@@ -292,13 +327,11 @@ def slipped(search: Search) -> Iterator[Explained]:
     ]
     if not tried:
         return
-    cells = problem.guessing.evaluate(problem.restarted(np.stack([point for _, _, point in tried])))
-    reach = np.abs(np.nan_to_num(problem.slopes(here, problem.box))) @ (problem.box.width / 2) / problem.half
-    off = np.abs(problem.mismatch(cells)) - reach
+    off = _off(problem, problem.restarted(np.stack([point for _, _, point in tried])))
     for n, (cell, _, _) in enumerate(tried):
         if not cell.given:
             off[n, cell.n] = 0.0
-    left = np.nan_to_num(off, nan=np.inf, posinf=np.inf).max(axis=1)
+    left = off.max(axis=1)
     order = [n for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS]
     texts: dict[_Cell, list[str]] = {}
     first: dict[_Cell, tuple[Problem, Box, Best]] = {}
@@ -310,6 +343,14 @@ def slipped(search: Search) -> Iterator[Explained]:
             first.setdefault(cell, (changed, box, now))
     for cell, (would, *also) in texts.items():
         yield search.explained([cell.change(problem, would, also, ())], *first[cell])
+
+
+def _off(problem: Problem, points: Array) -> Array:
+    """What points (points, unknowns) leave that the box cannot do by its slopes (points, published)."""
+    here = problem.guessing.at(problem.box.start)
+    reach = np.abs(np.nan_to_num(problem.slopes(here, problem.box))) @ (problem.box.width / 2) / problem.half
+    off = np.abs(problem.mismatch(problem.guessing.evaluate(points))) - reach
+    return np.nan_to_num(off, nan=np.inf, posinf=np.inf)
 
 
 def _slips_of(cell: _Cell, cells: Array) -> Iterator[int]:

@@ -25,6 +25,8 @@ CONSTANTS = {"ln 10": math.log(10), "2π": 2 * math.pi, "π": math.pi, "√2": m
 number is met by one of so many by chance: only columns of several are multiplied, or divided, by them."""
 MOST_COUNTED = 100
 """Of more rows n and n - 1 are nearer than the digits that are printed mostly tell, and explain by chance."""
+ANYTHING = 2.0
+"""Of a published value: what moves it by more between the ends of a print explains whatever it is."""
 UNITS = (
     ("rad", "deg"), ("s", "min", "h"), ("mm", "in"), ("m/s", "km/h"), ("Pa", "atm", "mmHg"),
     ("J", "cal", "eV"), ("N", "kgf"),
@@ -172,10 +174,24 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
     if not alive:
         return
     starts = problem.restarted(np.stack([box.start for _, box in alive]))
-    yield from search.of_likeliest([
+    told = search.of_likeliest([
         (change, problem, replace(box, start=start))
         for (change, box), start in zip(alive, starts, strict=True)
     ])  # fmt: skip
+    for each in told:
+        if _tells(each):
+            yield each
+        else:
+            search.drop(certain=False)
+
+
+def _tells(found: Explained) -> bool:
+    """Whether not every value comes out of what an explanation allows: so many turns hold any sine."""
+    problem, box = found.problem, found.box
+    slopes = np.abs(np.nan_to_num(problem.slopes(problem.at(found.best.point), box)))
+    moved = (box.low != problem.box.low) | (box.high != problem.box.high)
+    reach = slopes[:, moved] @ (box.width[moved] / 2)
+    return bool((reach <= ANYTHING * np.abs(problem.centre))[reach > 0].all())
 
 
 def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | None:
