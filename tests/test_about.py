@@ -169,3 +169,20 @@ def test_digits_were_cut_off_of_what_is_said_to_be_truncated(
     study = Study(tmp_path)
     found = [c for c in (*study.refereed.comparisons, *study.refereed.comparisons_u) if c.verdict != "same"]
     assert len(found) == differs
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [("6.86", True), ("6.9", True), ("7", True), ("6", True), ("6.80", False), ("5", False), ("8", False)],
+)
+def test_degrees_of_freedom_are_printed_truncated_or_before(tmp_path: Path, text: str, same: bool) -> None:
+    """Two equal errors of 4 and 3 degrees of freedom have 4 / (1/4 + 1/3) = 6.857 (JCGM 100, G.2b)."""
+    code = "from loopsheet import Method, given, let\n\nclass Two(Method):\n    'A sum.'\n"
+    code += "    a = given('1', 'one')\n    b = given('1', 'other')\n    y = let(a + b, 'sum')\n"
+    (tmp_path / "workbook.py").write_text(code)
+    errors = 'a = "1.00, u = 0.01, dof = 4"\nb = "1.00, u = 0.01, dof = 3"\n'
+    toml = f'workbook = "workbook.py"\n[parameters]\n{errors}[published]\nfile = "published.csv"\n'
+    (tmp_path / "report.toml").write_text(toml)
+    (tmp_path / "published.csv").write_text(f"{HEADER}\nT,dof(y),,{text},1,,,\n")
+    (found,) = Study(tmp_path).refereed.comparisons_u
+    assert (found.verdict == "same") is same

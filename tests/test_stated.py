@@ -102,7 +102,7 @@ def test_bare_limits_mean_what_was_said_once_for_all() -> None:
         ("s = 0.1, n = 2.5", "n = 2.5", 9),
         ("t sd = 0.1, dof = 2", "t sd = 0.1", 0),
         ("t scale = 0.1", "t scale = 0.1", 0),
-        ("u = 0.1, dof = 0", "dof = 0", 9),
+        ("u = 0.1, dof = 0.5", "dof = 0.5", 9),
         ("U = 0.1, p = 100 %", "p = 100 %", 9),
         ("u = 1e999", "1e999", 4),
         ("", "", 0),

@@ -4,7 +4,7 @@ u(l)              the combined standard uncertainty; u1(l): to first order alone
 u(l, d)           what all errors of the column d contribute to it
 U99(l), k99(l)    the expanded uncertainty for 99 %, and its coverage factor
 U(l, k=2)         the standard uncertainty times a factor that was chosen
-dof(l)            the effective degrees of freedom
+dof(l)            the effective degrees of freedom, truncated or not
 r(R, X)           the correlation of two cells of the same row
 low95(l), high95(l)   the ends of the interval with equal tails, by Monte Carlo
 """

@@ -428,11 +428,13 @@ def _keys(fields: list[tuple[str, int]], allowed: set[str]) -> Iterator[tuple[st
             "p": LEVELS[0] <= number <= LEVELS[1],
             "n": number >= 2 and whole and not percent,
             "k": 0 < number <= MOST_K and not percent,
+            "dof": number >= 1 and not percent,
         }
         if not fits.get(name, number > 0 and not percent):
             hints = {
                 "p": "a coverage probability is from 1 % to 99.9999 %",
                 "n": "two readings or more",
+                "dof": "one degree of freedom or more",
                 "k": "k is 2 or 3, say, and hardly more; a coverage probability is p = 95 %",
             }
             raise StatementError("LS431", field, start, hints.get(name, "it must be greater than 0"))

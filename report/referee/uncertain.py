@@ -166,6 +166,12 @@ class _Asked:
             )
             why = NO_FREEDOM if known else NOTHING
             return Cell(published.cell, index, None, Status.DOMAIN, None, why, there.word)
+        if about.kind == "dof" and not prints_same(number, published.printed):
+            # Truncated they are for a table of t; some print what they were before.
+            before = self.spread.freedom(about.cell, self.values.row(self.values.sheet[about.cell], index))
+            number = (
+                before if published.printed.decimals or prints_same(before, published.printed) else number
+            )
         return Cell(published.cell, index, number, Status.OK, word=there.word)
 
     def number(self, about: About, index: tuple[int, ...], tolerance: float) -> float:

@@ -46,7 +46,7 @@ ROUNDED = 1e-12
 # --- degrees of freedom
 
 
-def effective(u: float, contributions: Array, dof: Sequence[float]) -> float:
+def effective(u: float, contributions: Array, dof: Sequence[float], whole: bool = True) -> float:
     """Effective degrees of freedom of a sum, by Welch and Satterthwaite (JCGM 100, G.2b).
 
     Parameters
@@ -57,6 +57,8 @@ def effective(u: float, contributions: Array, dof: Sequence[float]) -> float:
         In the same unit: each of what one estimate tells of.
     dof : sequence of float
         Of each estimate, which is independent of the others.
+    whole : bool
+        Whether it is truncated, as for a table of t (G.4.1).
 
     Returns
     -------
@@ -72,7 +74,9 @@ def effective(u: float, contributions: Array, dof: Sequence[float]) -> float:
     inf
     """
     below = sum(c**4 / n for c, n in zip((contributions / u).tolist(), dof, strict=True)) if u > 0 else 0.0
-    return float(max(1, math.floor(round(1 / below, 2)))) if below * MOST_DOF > 1 else math.inf
+    if below * MOST_DOF <= 1:
+        return math.inf
+    return float(max(1, math.floor(round(1 / below, 2)))) if whole else 1 / below
 
 
 def of_sum(
@@ -80,6 +84,7 @@ def of_sum(
     contributions: Array,
     pairs: Sequence[tuple[int, int, float]],
     u: float | None = None,
+    whole: bool = True,
 ) -> tuple[float, float]:
     """The standard uncertainty of a sum of errors, and its effective degrees of freedom.
 
@@ -93,6 +98,8 @@ def of_sum(
         Places of two sources that are correlated, and their coefficient.
     u : float, optional
         The standard uncertainty, where it is known.
+    whole : bool
+        As for :func:`effective`.
 
     Returns
     -------
@@ -112,7 +119,7 @@ def of_sum(
         variances[sample] = variances.get(sample, 0.0) + float(contributions[n] * together[n])
     dof = {sample: source.dof for sample, source in zip(samples, sources, strict=True)}
     parts = np.sqrt(np.maximum(list(variances.values()), 0.0))
-    return u, effective(u, parts, list(dof.values()))
+    return u, effective(u, parts, list(dof.values()), whole)
 
 
 def with_correlated(contributions: Any, pairs: Sequence[tuple[int, int, float]]) -> Any:

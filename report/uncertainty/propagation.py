@@ -306,6 +306,11 @@ class Spread:
             self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
         )
 
+    def freedom(self, name: str, row: int) -> float:
+        """The effective degrees of freedom of a cell, before they are truncated."""
+        own = self.contributions([(name, row)])[0, : len(self.sources)]
+        return of_sum(self.sources, own, self._pairs, whole=False)[1]
+
     def unresolved(self, name: str, row: int) -> float:
         """What the digits of paired readings leave of a cell, in SI; 0 unless they scatter by less than half.
 
