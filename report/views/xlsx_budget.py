@@ -188,7 +188,8 @@ class _Written:
         if source.said == SCATTER:
             own = self.readings(source)
             spread, left = f"STDEV({own})", f"COUNT({own})-1"
-            size, number = f"={spread}", f"={left}"
+            # Of readings that are all the same nobody knows it here: a cell has no digits that leave more.
+            size, number = f"=IF({spread}=0,NA(),{spread})", f"={left}"
             if source.u and source.shape is not Shape.STUDENT:
                 # Of readings that are all the same the digits leave more, as long as they are.
                 size, number, kind = (
@@ -212,7 +213,9 @@ class _Written:
             slope = self.slope(source) or f"=IF({self.issued},{contribution / u!r},NA())"
             style.formula(sheet, row, 6, slope, contribution / u, form)
             form = number_format(rounded(contribution, 3))
-            style.formula(sheet, row, 7, f"=D{row + 1}*G{row + 1}", contribution, style("number", form))
+            product = f"D{row + 1}*G{row + 1}"
+            typed = product if size else f'IF(COUNTIF(D{row + 1},">=0")=1,{product},NA())'
+            style.formula(sheet, row, 7, f"={typed}", contribution, style("number", form))
         else:  # larger in one cell than in another: there is no one sensitivity
             slope = self.slope(source) or f"=IF({self.issued},{contribution!r},NA())"
             self.number(row, 7, slope, contribution, number_format(rounded(contribution, 3)))
@@ -352,10 +355,13 @@ class _Written:
         free = f"=IF({at['largest']}=0,{_UNLIMITED:.0f},{freedom})", min(budget.dof, _UNLIMITED)
         # What has no value has no uncertainty, but the code that stands for it.
         root, wide = f"SQRT(MAX(0,{first}+{at['second']}))", f"{at['k']}*{at['u']}"
+        # Sources that do nothing after an edit may do something to second order.
+        stated = f"$D${self.first + 1}:$D${self.last + 1}"
+        known = f"IF(AND({root}=0,SUMSQ({stated})>0),NA(),{root})"
         sure, form = self.form(budget.u), self.form(budget.expanded)
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={cell}", value, shown),
-            ("standard uncertainty u", f"=IF(ISNUMBER({at['value']}),{root},{at['value']})", u, sure),
+            ("standard uncertainty u", f"=IF(ISNUMBER({at['value']}),{known},{at['value']})", u, sure),
             ("variance of second order", self.second_order(first), second, of_second),
             ("largest contribution", f"=MAX(MAX({own}),-MIN({own}))", largest, of_largest),
             ("all others together", f"=SQRT(MAX(0,{lost})+ABS({at['second']}))", others, of_largest),

@@ -129,6 +129,8 @@ def write_limits(
             f"IF({{above}}>0.5,{to.tail('-N({z high})')}-{{below}},1-({{below}}+{{above}})))"
         )
     )
+    crossed = "AND(ISNUMBER({low}),ISNUMBER({high}),N({low})>N({high}))"
+    inside = f"IF({crossed},NA(),{inside})"
     to.line("inside", "conformance probability", inside, found.probability, CHANCE)
     if by.law:
         said = "the probabilities do not follow an edit: #N/A where value or limits are not as issued"
@@ -140,7 +142,7 @@ def write_limits(
         f"IF(ISNUMBER({{high}}),({{to high}}-{{value}})/{{u}}>=-{ROUNDING},TRUE))"
     )
     outside = f"OR(N({{z low}})<-{ROUNDING},N({{z high}})<-{ROUNDING})"
-    decided = f"IF({outside},{no},IF({accepted},{yes},{open_}))"
+    decided = f"IF({crossed},NA(),IF({outside},{no},IF({accepted},{yes},{open_})))"
     to.line("decision", "decision", decided, found.decision.value)
     for name, when, taken, risk in (
         ("consumer", yes, "{below}+{above}", found.consumer_risk),

@@ -152,7 +152,9 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "they were changed since, build the report again. "
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
-        "Numbers are stored in full; only what is shown is rounded, as its uncertainty as issued has it.",
+        "Numbers are stored in full; only what is shown is rounded, as its uncertainty as issued has it. "
+        "Uncertainties follow an edit to first order: whether terms of second order count was looked at for "
+        "the inputs as issued.",
         f"How many rows there are, and which, is fixed in this workbook: to add {rows}"
         + (f" or change {' or '.join(counts)}" if counts else "")
         + f", build the report again. To leave {rows} out, empty one of its cells. Do not sort the rows: "

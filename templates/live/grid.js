@@ -265,6 +265,8 @@ function columnAsked(text, inputs, { heads, row }) {
   const [, name, unit] = /^(.*?)\s*(?:\[(.*)\])?$/.exec(text.trim()), own = inputs.includes(name) && LIVE.columns[name].unit;
   const plain = (one = "") => one.replace(/[µμ]/, "u").replace(/^[-1]$/, "");
   const other = own && unit !== undefined && ![own, /\[(.*)\]/.exec(heads[name])?.[1]].some((one) => plain(one) === plain(unit));
+  const [, of] = /^u\((.*)\)$/.exec(name) ?? [];
+  if (inputs.includes(of) && !(name in heads)) return { why: `no column ${name} is typed here: leave it out, or write u behind the number, as 46.7(5)` };
   return other ? { why: `${name} is in ${own} here, not in ${unit}` } : [row, heads.test].includes(name) ? "" : name;
 }
 

@@ -213,6 +213,8 @@ function decimalsOf(text) {
 
 // A printed number with so many units of its last digit more; what is no number stays.
 function stepped(text, by) {
+  const concise = CONCISE.exec(text);
+  if (concise) return `${stepped(concise[1], by)}(${concise[2]})`;
   if (!NUMBER.test(text)) return text;
   const [mantissa, ...power] = text.split(/(?=e)/i), places = decimalsOf(mantissa), d = tenTo(places);
   return fixedExact({ n: readExact(mantissa).n * d / readExact(mantissa).d + BigInt(by), d }, places) + power.join("");

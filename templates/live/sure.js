@@ -166,7 +166,7 @@ function sureOf(look, name, row) {
 function doubtOf(look, name, row) {
   const more = LIVE.shared ? look.sure.more[[name, row]] : undefined, { floor, doubt } = LIVE.columns[name];
   if (more === undefined) return doubt;
-  if (!knownU(look, name, row)) return "";
+  if (!knownU(look, name, row)) return Number.isNaN(more) && look.trace.isOk(name, row) ? "U is not known: second order was not looked at" : "";
   const { u, factor } = look.sure.budget(name, row), low = floor || look.trace.declared[name].positive ? 0 : -Infinity;
   const fails = Math.abs(more) > look.sure.u(name, row) ** 2 || look.trace.sheet.value[name][row] - factor * u < low;
   if (!(factor > 0)) return doubt;
@@ -203,7 +203,7 @@ function writeUncertain(look) {
   for (const told of LIVE.shared ? all(".headline .sure") : []) {
     const box = told.parentElement, { cell: name, index } = box.querySelector("[data-cell]").dataset, row = look.trace.row(name, index), [, u, factor, wide] = sureOf(look, name, row)?.texts ?? [];
     told.replaceChildren(...(wide ? [`U\u00a0=\u00a0${wide}`, ...behind(name), ` (k\u00a0=\u00a0${factor})`] : []));
-    const doubt = u ? doubtOf(look, name, row) : "", at = box.querySelector(".doubt") ?? (doubt && make("span", { class: "doubt" }));
+    const doubt = u || Number.isNaN(look.sure.more[[name, row]]) ? doubtOf(look, name, row) : "", at = box.querySelector(".doubt") ?? (doubt && make("span", { class: "doubt" }));
     if (at && !at.isConnected) told.after(at);
     if (at) at.replaceChildren(...(doubt ?? "").split(/(loopsheet .*)/).filter(Boolean).map((text, n) => (n ? make("code", {}, text) : text)));
   }

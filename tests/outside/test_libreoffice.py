@@ -428,3 +428,51 @@ def test_uncertainties_of_an_edited_workbook_follow_its_readings(
         again, now, then = sizes[name]
         assert again == pytest.approx(now, rel=1e-9)
         assert now != pytest.approx(then, rel=1e-6) or name == "coverage factor k"
+
+
+UNKNOWN = """from loopsheet import Method, given, let, mean, measured
+
+
+class Unknown(Method, headline="D square"):
+    V = measured("V", "a voltage")
+    S = given("V", "another")
+    D = let(mean(V) + S, "what is sought")
+    square = let((mean(V) - S) ** 2, "how far both are apart", "V^2")
+"""
+
+
+def test_what_a_workbook_cannot_know_after_an_edit_is_not_told(
+    require: Callable[..., str], tmp_path: Path
+) -> None:
+    """Readings made equal, slopes that came to 0, uncertainties that are none, limits in the wrong order."""
+    (tmp_path / "workbook.py").write_text(UNKNOWN, encoding="utf-8")
+    (tmp_path / "d.csv").write_text("test,V [V]\n1,5.01\n2,4.99\n3,5.03\n", encoding="utf-8")
+    (tmp_path / "report.toml").write_text(
+        'workbook = "workbook.py"\n[parameters]\nS = "6.00 V, u = 0.02 V"\n[measurements]\nfile = "d.csv"\n'
+        '[uncertainty]\nV = "scatter"\n[limits]\nD = "10 .. 12 V, guard = U"\n',
+        encoding="utf-8",
+    )
+    made = spreadsheets.deliver(tmp_path)
+    cells = spreadsheets.cells_of(made.content)["uncertainty"]
+    at = {str(said): f"B{cell[1:]}" for cell, said in reversed(cells.items()) if cell.startswith("A")}
+    source = next(cell[1:] for cell, said in cells.items() if cell[0] == "A" and said == "S")
+    edits = {
+        "equal": {("V", 0): 5.0, ("V", 1): 5.0, ("V", 2): 5.0},
+        "flat": {("V", 0): 5.0, ("V", 1): 6.0, ("V", 2): 7.0},
+    }
+    books = {name: made.edited(own) for name, own in edits.items()}
+    for name, typed in {"emptied": {f"D{source}": None}, "negative": {f"D{source}": -0.5}}.items():
+        books[name] = spreadsheets.typed(made.content, {"uncertainty": typed})
+    books["crossed"] = spreadsheets.typed(made.content, {"uncertainty": {at["lower tolerance limit"]: 13.0}})
+    soffice = require("soffice", "libreoffice")
+    read = spreadsheets.recalculate(soffice, tmp_path / "office", books)
+    u = at["standard uncertainty u"]
+    assert cells[u] == pytest.approx(0.0231, rel=1e-2)
+    for name in ("equal", "emptied", "negative"):
+        assert read[name]["uncertainty"][u] == "#N/A", name
+    rows = [
+        int(cell[1:]) for cell, said in cells.items() if (cell[0], said) == ("A", "standard uncertainty u")
+    ]
+    assert read["flat"]["uncertainty"][f"B{max(rows)}"] == "#N/A"
+    for line in ("conformance probability", "decision"):
+        assert read["crossed"]["uncertainty"][at[line]] == "#N/A", line

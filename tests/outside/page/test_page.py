@@ -499,6 +499,10 @@ def test_numbers_of_rows_that_are_not_here_are_no_measurements(open_page: Open) 
     [
         ("x_p [mm]\tv [m/s]\n0.0241\t2.4\n", "x_p is in µm here, not in mm."),
         ("speed\tdepth\n2.4\t24.1\n", "no such column is typed here: speed, depth."),
+        (
+            "v\tu(v)\n2.4\t0.01\n",
+            "no column u(v) is typed here: leave it out, or write u behind the number, as 46.7(5).",
+        ),
     ],
 )
 def test_another_unit_or_no_known_name_is_refused(open_page: Open, block: str, said: str) -> None:

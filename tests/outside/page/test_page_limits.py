@@ -96,3 +96,24 @@ def test_decisions_are_those_of_a_build(
             assert again[cell] in word, cell
     assert now["rho[4]"] in ("is decided by a build", "does not conform")
     assert {cell for cell, word in now.items() if word == "is decided by a build"} <= {"rho[4]", "off"}
+
+
+def test_of_a_result_at_a_corner_it_is_told_that_nothing_is_known(
+    open_page: Callable[..., Live], tmp_path: Path
+) -> None:
+    (tmp_path / "workbook.py").write_text(
+        "from loopsheet import Method, given, let\n\nclass Corner(Method, headline='p'):\n    'A distance.'\n"
+        "    m = given('mm', 'one')\n    z = given('mm', 'other')\n"
+        "    p = let(max(m - z, z - m), 'distance')\n"
+    )
+    numbers = 'm = "5.2 mm, u = 0.02"\nz = "1.0 mm, u = 0.2"\n'
+    (tmp_path / "report.toml").write_text(f'workbook = "workbook.py"\n[parameters]\n{numbers}')
+    build(Study(tmp_path), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    live.type("z", "", "5.2")
+    live.wait_for_draws()
+    told = "U is not known: second order was not looked at"
+    assert told in (live.page.locator(".headline").text_content() or "")
+    live.type("z", "", "5.1")
+    live.wait_for_draws()
+    assert told not in (live.page.locator(".headline").text_content() or "")

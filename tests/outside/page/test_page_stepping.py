@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from driving import Live
 
 Open = Callable[..., Live]
@@ -23,11 +24,14 @@ def test_alt_and_an_arrow_step_the_last_digit(live: Live, open_page: Open) -> No
     assert live.input("x_p", 2).input_value() == "29.8"
 
 
-def test_what_is_being_typed_is_stepped(live: Live) -> None:
+@pytest.mark.parametrize(
+    ("text", "below"), [("2.5", "2.4"), ("2.50(3)", "2.49(3)"), ("25e-1(2)", "24e-1(2)")]
+)
+def test_what_is_being_typed_is_stepped(live: Live, text: str, below: str) -> None:
     live.input("v", 1).click()
-    live.page.keyboard.type("2.5")
+    live.page.keyboard.type(text)
     live.press("Alt+ArrowDown")
-    assert live.input("v", 1).input_value() == "2.4"
+    assert live.input("v", 1).input_value() == below
 
 
 def test_the_issued_curves_lie_in_grey_below_edited_ones(live: Live) -> None:
