@@ -215,7 +215,8 @@ class Roots(Method, source="own", headline="y z"):
 
 
 @pytest.mark.parametrize(
-    ("a", "name", "lost"), [("0.010, u = 0.004", "y", 0.0062), ("0.01, u = 0.005", "z", 0.023)]
+    ("a", "name", "lost"),
+    [("0.010, u = 0.004", "y", 0.0062), ("0.01, u = 0.005", "z", 0.023), ("0.01, u = 0.01", "y", 0.159)],
 )
 def test_a_draw_without_a_root_has_no_value(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], a: str, name: str, lost: float
@@ -227,7 +228,9 @@ def test_a_draw_without_a_root_has_no_value(
     found = draw(report.inputs, report.values, Spread(report.inputs, report.values).budget(name, 0), 100_000)
     assert found.lost / 100_000 == pytest.approx(lost, rel=0.1)
     assert main(["budget", name, str(tmp_path), "--draws", "10000"]) == 0
-    assert f"{name} conforms" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert f"{name} conforms" in told
+    assert ("conformance probability not known: too many draws have no value" in told) is (lost > 0.025)
 
 
 def test_a_number_that_is_exact_is_not_drawn(capsys: pytest.CaptureFixture[str]) -> None:

@@ -35,7 +35,7 @@ def lines(report: Report, found: Conformity) -> Iterator[str]:
     yield f"limits {found.limits}{_rule(report, found)}"
     yield sentence(found)
     if told := ", ".join(probabilities(found)):
-        yield told + (f", by {found.by.because}" if found.budget.u else "")
+        yield told + (f", by {found.by.because}" if found.budget.u and conforming(found) else "")
 
 
 def decision(report: Report, found: Conformity) -> str:
@@ -52,6 +52,8 @@ def probabilities(found: Conformity) -> Iterator[str]:
     """The conformance probability and the risk that is taken, where a distribution is known."""
     if told := conforming(found):
         yield f"conformance probability {told}"
+    elif found.decision is not Decision.NONE and found.by.because:
+        yield f"conformance probability not known: {found.by.because}"
     if told := risk(found):
         yield f"specific {told}"
 
