@@ -534,6 +534,19 @@ def test_a_cell_without_a_value_is_told(tmp_path: Path) -> None:
     assert any(line.startswith("finding: ") for line in found.findings)
 
 
+@pytest.mark.parametrize(
+    ("line", "near"),
+    [("c = let(Tt / 2, 'x')", "'T'"), ("c = let(srqt(T / T), 'x')", "'sqrt'"), ("g = let(2 * g, 'x')", "")],
+)
+def test_what_a_star_brings_along_is_not_meant(tmp_path: Path, line: str, near: str) -> None:
+    head = "from sympy import *\nfrom loopsheet import *\n\nclass Stars(Method):\n    'One.'\n"
+    code = f"{head}    T = given('s', 'period')\n    {line}\n"
+    with pytest.raises(InputError) as refused:
+        Study(folder(tmp_path, code, 'T = "1.0 s"\n')).report  # noqa: B018
+    assert (f"did you mean {near}" in str(refused.value)) is bool(near)
+    assert ("did you mean" in str(refused.value)) is bool(near)
+
+
 @pytest.mark.parametrize(("head", "code"), [("swing", 0), ("test", 0), ("swings", 2)])
 def test_the_rows_may_be_called_as_the_method_calls_them(
     head: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]

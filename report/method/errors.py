@@ -19,7 +19,7 @@ from ..cells.units import check_column
 from ..column import SheetError
 from ..messages.errors import suggest
 from .body import MethodBody
-from .lines import ComputedLine, Declaration, FitLine, PointsLine, TakenLine
+from .lines import FUNCTIONS, ComputedLine, Declaration, FitLine, PointsLine, TakenLine
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -89,7 +89,10 @@ class WatchedBody(MethodBody):
             beyond = name in around.f_globals or name in around.f_code.co_freevars or hasattr(builtins, name)
             if beyond or name.startswith("__"):
                 raise
-            near = suggest(name, [*self, *around.f_globals])
+            # Of all that a star brings along nothing is meant.
+            brought = (n for n, of in around.f_globals.items() if not _is_of_sympy(of))
+            theirs = [*brought, *(n for n in (*FUNCTIONS, "sqrt", "pi") if n in around.f_globals)]
+            near = suggest(name, [*self]) or suggest(name, theirs)
             hint = f": {near}" if near else ""
             return self.failed(NameError(f"name {name!r} is not defined{hint}", name=name), around.f_lineno)
 
@@ -153,6 +156,10 @@ def named_next(line: Declaration | FitLine) -> Any:
     if body is not None:
         body.unnamed.append(line)
     return line
+
+
+def _is_of_sympy(value: Any) -> bool:
+    return (getattr(value, "__module__", None) or type(value).__module__).startswith("sympy")
 
 
 def _failed_in(value: Any) -> Iterator[_Failed]:
