@@ -226,7 +226,7 @@ function pasteScalars(element, rows, read) {
 // A block of texts by the names in its first line, without one from a cell on; by the numbers of rows where it has
 // them, else down, into new tests. What is to be said of it: why all of it is refused, or what of it had no place.
 function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, inputs, row: called }) {
-  const state = copied(page.history.now), tests = state.tables[axis], labels = tests.map(({ label }) => String(label)), lost = new Set();
+  const state = copied(page.history.now), tests = state.tables[axis], before = tests.length, labels = tests.map(({ label }) => String(label)), lost = new Set();
   const file = Object.keys(LIVE.tables[axis].heads), first = rows.map(([text]) => read(text)), width = rows[0].length;
   let names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell));
   if (!head) {
@@ -257,7 +257,7 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   }
   moved(page.history.push(state));
   const counts = [[rowsLost, "row"], [lost.size, "column"]].filter(([count]) => count).map((one) => plural(...one));
-  return counts[0] && `Pasted, but ${counts.join(" and ")} had no place.`;
+  return [counts[0] && `Pasted, but ${counts.join(" and ")} had no place.`, tests.length > before && ofNewRows(axis)].filter(Boolean).join(" ");
 }
 
 // The column that a name in the first line of a block is of: "" of the numbers of rows; or why it is refused.

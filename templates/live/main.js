@@ -83,11 +83,21 @@ function newTest(state, axis) {
   return test;
 }
 
+// What is said of new rows where each row of the file says how sure its numbers are.
+function ofNewRows(axis) {
+  const names = Object.keys(LIVE.tables[axis].rows[0].cells).filter((name) => {
+    const { errors, given } = LIVE.columns[name];
+    return errors && !Array.isArray(errors) && !given.u;
+  });
+  return names.length ? `How sure ${names.join(" and ")} of a new row is, its digits tell, unless its u is written behind it, as in 46.7(5).` : "";
+}
+
 function addTest(axis) {
   change((state) => newTest(state, axis));
   const table = page.tables.find((one) => one.editable && one.axis === axis);
   const input = table.body.rows[table.body.rows.length - 1].querySelector("input[data-cell]");
   enter(input);
+  if (ofNewRows(axis)) note(ofNewRows(axis));
 }
 
 const undo = () => moved(page.history.move(-1));

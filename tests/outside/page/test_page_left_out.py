@@ -116,6 +116,18 @@ def test_a_cell_takes_what_the_table_takes(open_table: Callable[..., Live], tmp_
     assert driving.differences(live.cells(), computed(tmp_path / "again", table).values) == []
 
 
+def test_how_sure_a_new_row_is_has_to_be_said(open_table: Callable[..., Live]) -> None:
+    """Of e each row says it; of the others a column or nobody does."""
+    live = open_table(CONCISE)
+    live.click("live-add")
+    said = "How sure e of a new row is, its digits tell, unless its u is written behind it, as in 46.7(5)."
+    assert live.text("live-note") == said
+    live.input("e", 3).click()
+    assert live.text("live-note") == said
+    live.paste("0.5350(10)\n0.5350\n0.5350\n0.5350\n")
+    assert live.text("live-note").endswith(said)
+
+
 def test_no_uncertainty_is_made_up_where_a_column_states_them(
     open_table: Callable[..., Live], tmp_path: Path
 ) -> None:
