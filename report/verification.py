@@ -169,9 +169,9 @@ def _numbers(out: Path, again: Path, report: Report) -> Differences | None:
 
 def _allowed(report: Report) -> dict[str, dict[Index, float]]:
     """What rounding may do: each of two engines may be off by what the judge of the engines allows."""
-    from .judge.bounds import RoundingBounds
+    from .judge.bounds import MOVES, RoundingBounds
 
-    found = RoundingBounds(report.sheet, report.values.layouts, report.values.value).nearby(0)
+    found = RoundingBounds(report.sheet, report.values.layouts, report.values.value).after_moves(MOVES - 1)
     return {
         column.name: {
             label: 2 * LIMIT * EPS * float(bound) if bound < float("inf") else 0.0

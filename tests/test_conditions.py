@@ -106,10 +106,12 @@ def test_the_square_of_what_is_nothing_but_rounding(of_a_cell: bool) -> None:
     square = (2 * numbers.EPS) ** 2
     assert bounds(1.0, 1.0)["c"] == [0]
     assert (
-        square <= numbers.LIMIT * numbers.EPS * bounds(1.0, 1.0).of("c", 0, square) <= 8 * numbers.EPS * most
+        square
+        <= numbers.LIMIT * numbers.EPS * bounds(1.0, 1.0).allowing("c", 0, square)
+        <= 8 * numbers.EPS * most
     )
-    assert bounds(1.0, 1.0).of("c", 0, 1e-20) <= most
-    assert bounds(1.0, 2.0).of("c", 0, 1e-20) == bounds(1.0, 2.0)["c"] == pytest.approx(1 + 2 * 6)
+    assert bounds(1.0, 1.0).allowing("c", 0, 1e-20) <= most
+    assert bounds(1.0, 2.0).allowing("c", 0, 1e-20) == bounds(1.0, 2.0)["c"] == pytest.approx(1 + 2 * 6)
 
 
 def test_a_row_is_its_own() -> None:

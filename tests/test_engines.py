@@ -73,7 +73,7 @@ def _is_near(number: Any, true: Any, found: Reading, judge: Judge, name: str, ro
         return  # what a double has left of its digits is chance
     lost = exact.as_mpf(found.rounded[name][row]) if name in found.rounded else 0
     difference = float(abs(exact.as_mpf(number) - true) - lost)
-    assert difference <= LIMIT * EPS * judge.bounds.of(name, row, difference), row
+    assert difference <= LIMIT * EPS * judge.bounds.allowing(name, row, difference), row
 
 
 def test_a_gap_names_an_engine_and_a_case_that_there_are() -> None:

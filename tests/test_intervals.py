@@ -69,6 +69,16 @@ FUNCTIONS = (
 )
 
 
+def test_a_root_of_what_begins_at_zero_begins_there() -> None:
+    """Rounding outwards leaves some 1e-324 below it, and nothing is left out by that."""
+    a, b = interval((0.0, 1.0)), interval((2.0, 3.0))
+    for found in (np.sqrt(a * b), np.sqrt(a / b), np.sqrt((a * a).total()), (a * b) ** 1.5):
+        assert found.low == 0
+    for found in (np.sqrt(a - 1e-9), (a - 1e-9) ** 1.5):
+        assert found.low == -np.inf
+    assert np.sqrt(a - b).low == -np.inf
+
+
 @pytest.mark.parametrize("name", FUNCTIONS)
 @given(a=between(-50, 50), s=shares)
 def test_functions_hold_what_they_give_inside(name: str, a: Any, s: Any) -> None:

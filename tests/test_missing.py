@@ -260,6 +260,18 @@ def test_a_fit_is_of_rows_that_have_all_it_names(tmp_path: Path, observed: str, 
     assert np.ravel(report["line_N1"].value) == pytest.approx([4])
 
 
+def test_a_mean_beside_a_fit_that_fails_stays(tmp_path: Path) -> None:
+    """What rests on the fit has no value; the mean of x, in one quotient with it, is that of all x."""
+    code = "from sympy import sqrt\nfrom loopsheet import Method, fit, let, mean, measured, unknown\n\n"
+    code += 'class Line(Method, headline="q xbar"):\n    "A line."\n    x = measured("1", "place")\n'
+    code += '    y = measured("1", "height")\n    a = unknown("intercept")\n    b = unknown("slope")\n'
+    code += '    line = fit(y, a + b * x)\n    xbar = let(mean(x), "mean place")\n'
+    code += '    r = let(sqrt(y - a - b * x + 1), "root")\n    q = let(mean(r) / xbar, "quotient")\n'
+    report = Study(readings(tmp_path / "r", "x [1],y [1]\n1,2.1\n1,\n3,\n4,\n", code=code)).computed
+    assert report.values.cell("q").value is None
+    assert report.values.scalar("xbar") == 1
+
+
 def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = "x [m],y [m]\n1,2.1\n2,3.9\n3,\n4,8.2\n,9\n6,12.1\n"
     main(["check", str(readings(tmp_path / "r", table, code=SUMS))])

@@ -19,6 +19,7 @@ from loopsheet.report.distribution import Error
 from loopsheet.report.inputs.published import Pin, PublishedValue
 from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import certificate, misprints, search
+from loopsheet.report.referee.digits import is_slip
 from loopsheet.report.referee.scales import shifted
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.verdict import REACHABLE, WITHIN, Change, Explanation, Referee
@@ -312,6 +313,32 @@ def test_all_slips_that_explain_it_are_told() -> None:
     told = found(Sheet((X, square)), {"x": [pure("2.7"), pure("4.0")]}, value)
     change = next(each.first for each in told.explanations if each.first.kind == "misprint")
     assert (change.would_print, change.also) == ("2.8", ("7.2",))
+
+
+@pytest.mark.parametrize("text", ["2.07", "2.15", "2.25"])
+def test_each_way_to_print_it_is_told_once_and_slips_first(text: str) -> None:
+    """5 is the square of what is 2.236 off 5: 2.76 or 7.24."""
+    square = Column("square", ROWS, formula("square", (X[k] - 5) ** 2), positive=False)
+    value = [PublishedValue("Table", "square", (row,), pure(text)) for row, text in ((1, "5"), (2, "1.00"))]
+    told = found(Sheet((X, square)), {"x": [pure(text), pure("4.0")]}, value)
+    change = next(each.first for each in told.explanations if each.first.cell == "x")
+    ways = [change.would_print, *change.also]
+    assert len(set(ways)) == len(ways) <= misprints.LISTED + 1
+    slips = [is_slip(text, way) for way in ways]
+    assert slips[0]
+    assert slips == sorted(slips, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("x", "tenfold"), [("0.0 1.2 2.3", "0 120 230"), ("-2.0 -1.0 0.0 3.0", "-200 -100 0 300")]
+)
+def test_another_unit_is_told_of_a_column_with_a_zero(x: str, tenfold: str) -> None:
+    y = Column("y", ROWS, formula("y", 10 * X[k]), positive=False)
+    value = [PublishedValue("Table", "y", (row,), pure(text)) for row, text in enumerate(tenfold.split(), 1)]
+    told = found(Sheet((X, y)), {"x": [pure(text) for text in x.split()]}, value)
+    assert ("unit", "x") in [
+        (change.kind, change.cell) for each in told.explanations for change in each.changes
+    ]
 
 
 def test_two_misprints_are_the_smallest_set_without_which_the_rest_comes_out() -> None:

@@ -164,7 +164,7 @@ def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
     """A column with the unit that its formula gives, and shown as what of that kind it is computed from.
 
     Where that is shown in several units it is shown in SI; so is a pure number, as a sine is no angle, unless
-    it is a number of times such a column: a mean or a difference of per cents.
+    it is a sum, a mean or a difference of such columns: of per cents.
     """
     column = replace(column, unit=named_unit_of({**columns, column.name: column}, column))
     own = dict(dimension_of_unit(column.unit))
@@ -174,25 +174,29 @@ def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
     formula = column.rule.expression
     named = {str(symbol) for symbol in formula.free_symbols}
     alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
-    if not own and not _is_times(formula, {each.name for each in alike}):
+    if not own and not _adds_up(formula, {each.name for each in alike}):
         return column
     shown = {written_in(each, columns) for each in alike}
     return replace(column, display=f"like {alike[0].name}") if len(shown) == 1 else column
 
 
-def _is_times(formula: Expr, names: AbstractSet[str]) -> bool:
-    """Whether a formula adds up, or takes over rows, numbers of times such columns."""
+def _adds_up(formula: Expr, names: AbstractSet[str]) -> bool:
+    """Whether a formula adds up, takes away or divides by how many there are what is of such columns."""
     match formula:
         case Symbol() | Indexed():
             return name_of(formula) in names
         case Add():
-            return all(_is_times(term, names) for term in formula.args)
+            return all(_adds_up(term, names) for term in formula.args)
         case Sum() | OrderStatistic():
-            return _is_times(formula.function, names)
+            return _adds_up(formula.function, names)
         case Mul():
-            rest = [factor for factor in formula.args if not _is_times(factor, names)]
-            counts = all(symbol.is_integer for factor in rest for symbol in factor.free_symbols)
-            return counts and len(rest) == len(formula.args) - 1
+            rest = [factor for factor in formula.args if not _adds_up(factor, names)]
+            sizes = (
+                factor.free_symbols and all(s.is_integer for s in factor.free_symbols) for factor in rest
+            )
+            return len(rest) == len(formula.args) - 1 and all(
+                size or factor == -1 for size, factor in zip(sizes, rest, strict=True)
+            )
     return False
 
 

@@ -26,6 +26,8 @@ WIDER = 2.0**-50
 """Four units in the last place, at most: how far elementary functions may be off, relatively."""
 
 
+_NOTHING = -(2.0**-800)
+"""What rounding outwards makes of 0, and of that again: no part of it lies below 0."""
 _BIT, _LEAST = 2.0**-53 * (1 + 2.0**-52), 2.0**-1074
 
 
@@ -258,7 +260,7 @@ def _power(base: Intervals, exponent: Any) -> Intervals:
     if not isinstance(exponent, Intervals) and np.ndim(exponent) == 0 and float(exponent).is_integer():
         return _whole_power(base, int(exponent))
     found = _exp(_multiply(Intervals.of(exponent), _log(base)))
-    return Intervals(np.where(base.low < 0, -np.inf, found.low), found.high)
+    return Intervals(np.where(base.low < _NOTHING, -np.inf, found.low), found.high)
 
 
 def _whole_power(base: Intervals, exponent: int) -> Intervals:
@@ -287,7 +289,7 @@ def _log(a: Intervals) -> Intervals:
 
 def _sqrt(a: Intervals) -> Intervals:
     found = _outwards(np.sqrt(np.maximum(a.low, 0.0)), np.sqrt(a.high))
-    return Intervals(np.where(a.low < 0, -np.inf, np.maximum(found.low, 0.0)), found.high)
+    return Intervals(np.where(a.low < _NOTHING, -np.inf, np.maximum(found.low, 0.0)), found.high)
 
 
 def _absolute(a: Intervals) -> Intervals:

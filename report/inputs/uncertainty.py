@@ -68,10 +68,10 @@ class SharedError:
         """What it is for a number of a column."""
         return self.statements[of].of(printed, self.name)[0]
 
-    def move(self, of: str, printed: Printed) -> float:
-        """What one standard uncertainty of it moves a number by, in SI: a gain moves -5 V down and 5 V up."""
+    def sign(self, of: str, printed: Printed) -> int:
+        """Which way it moves a number: a gain moves -5 V down where it moves 5 V up."""
         (part,) = self.statements[of].parts
-        return self.error(of, printed).u * (-1 if part.scales and printed.value < 0 else 1)
+        return -1 if part.scales and printed.value < 0 else 1
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,9 @@
 
 To first order the error of a cell is at most eps times the sum, over all cells and sums s that it rests on,
 of |dc/ds| R_s, with the total derivative dc/ds along all ways from s to c: what cancels between two ways
-cancels here too. This bound over |c|, at least 1, is the condition of the cell.
+cancels here too. This bound over |c|, at least 1, is the condition of the cell. What has no slope where it
+is, as the square of a difference of equal numbers, has one where rounding may leave these: there a judge
+asks, too.
 """
 
 from __future__ import annotations
@@ -27,11 +29,15 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 
 
+MOVES = 3
+"""How often values are moved, before a difference is one: by chance two may move alike."""
+
+
 class RoundingBounds(Mapping[str, Array]):
     """A bound of the rounding error of every cell.
 
-    By column name, of shape (rows,); in SI and units of eps, at least the cell's own size; infinite where
-    nothing is known, NaN where the cell has no value.
+    By column name, of shape (rows,), where the values are; in SI and units of eps, at least the cell's own
+    size; infinite where nothing is known, NaN where the cell has no value.
 
     Parameters
     ----------
@@ -48,52 +54,49 @@ class RoundingBounds(Mapping[str, Array]):
             sources[node.name], number = np.arange(number, number + size), number + size
         self.chain = Chain(made, layouts, sources)
         self.sheet, self.layouts, self.value = sheet, layouts, value
-        self.near: list[dict[str, Array]] = []
-        self.found = self._at(value)
+        self.tried: list[dict[str, Array]] = []
+        self.bare = self._at(value)
 
     def __getitem__(self, name: str) -> Array:
-        return self.found[name]
+        return self.bare[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.found)
+        return iter(self.bare)
 
     def __len__(self) -> int:
-        return len(self.found)
+        return len(self.bare)
 
     def _at(self, value: Mapping[str, Array]) -> dict[str, Array]:
         status = {name: np.where(np.isnan(each), Status.INPUT, Status.OK) for name, each in value.items()}
         return _Spread(self.chain, Values(self.sheet, self.layouts, value, status)).bounds()
 
-    def nearby(self, number: int) -> dict[str, Array]:
-        """The bounds where all values are as far off, each by its own share, as rounding may leave them.
+    def after_moves(self, number: int) -> dict[str, Array]:
+        """The largest bounds where all values are off, each by a random share of what rounding may leave.
 
-        The square of a difference of equal numbers has no slope where it is, and has one there. Not less
-        than those where the values are; what is not known there stays.
+        Not less than those where the values are; what is not known there stays.
         """
-        while len(self.near) <= number:
-            draw = np.random.default_rng(len(self.near)).uniform
+        while len(self.tried) <= number:
+            draw = np.random.default_rng(len(self.tried)).uniform
             moved, found = {}, {}
             for name, own in self.value.items():
-                room = LIMIT * EPS * np.where(np.isfinite(self.found[name]), self.found[name], 0.0)
+                room = LIMIT * EPS * np.where(np.isfinite(self.bare[name]), self.bare[name], 0.0)
                 moved[name] = own + room * draw(-1, 1, own.size)
             for name, there in self._at(moved).items():
-                here = self.near[-1][name] if self.near else self.found[name]
+                here = self.tried[-1][name] if self.tried else self.bare[name]
                 found[name] = np.where(np.isfinite(there), np.maximum(here, there), here)
-            self.near.append(found)
-        return self.near[number]
+            self.tried.append(found)
+        return self.tried[number]
 
-    def of(self, name: str, row: int, difference: float) -> float:
+    def allowing(self, name: str, row: int, difference: float) -> float:
         """The bound for a cell that differs by so much: that where its values are, if it is enough."""
-        bound = float(self.found[name][row])
+        bound = float(self.bare[name][row])
         for number in range(MOVES):
             if not difference > LIMIT * EPS * bound:
                 break
-            bound = float(self.nearby(number)[name][row])
+            bound = float(self.after_moves(number)[name][row])
         return bound
 
 
-MOVES = 3
-"""How often values are moved, before a difference is one: by chance two may move alike."""
 EXPANDED = 1 << 24
 """Up to so many numbers, what scalars do to a column's rows is added up source by source; beyond, their
 bounds are added, which is never less."""

@@ -121,7 +121,7 @@ class Judge:
                 # Of what a file has cut, nothing is the engine's fault.
                 lost = exact.as_mpf(reading.rounded[name][row]) if name in reading.rounded else 0
                 difference = max(abs(exact.as_mpf(number) - true) - lost, 0)
-                tally.add(place, difference, self.bounds.of(name, row, float(difference)), scale)
+                tally.add(place, difference, self.bounds.allowing(name, row, float(difference)), scale)
 
 
 @dataclass

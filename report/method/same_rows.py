@@ -16,8 +16,8 @@ class SameRows:
     """The columns of a method, of which the sums and counts that one result rests on leave out the same rows.
 
     Those are rows in which what one of them, or what is computed from them, asks for has no value. What rests
-    on one of these sums cannot be asked; groups can, whose values are sums over their own rows. As a sum has
-    one value, results that share it are of the same rows.
+    on a sum over these rows cannot be asked, but by a fit to which it is given; groups can, whose values are
+    sums over their own rows. As a sum has one value, results that share it are of the same rows.
 
     Parameters
     ----------
@@ -68,7 +68,9 @@ class SameRows:
         groups = axis if isinstance(axis, GroupAxis) else None
         together = next(names for names in self._bound[groups] if total.name in names)
         if groups is None:
-            # What is named, too, where it rests on sums that are another result's: an observed over its mean.
+            if total.name not in self.of_fits:
+                return {name for name in together if not self.sums & self.below[name]}
+            # Of a fit also what is named and rests on other sums than its own: an observed over its mean.
             named = {each.name for name in together for each in self.sheet.precedents(self.sheet[name])}
             sums = self.sums & together
             return {name for name in together | named if not sums & self.below[name]}

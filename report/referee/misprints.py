@@ -210,32 +210,42 @@ def _with_slips(problem: Problem, cell: _Cell, told: _Told | None) -> _Told | No
 
     A slip stands before any other way to print a given cell.
     """
-    near = {told.change.would_print, *told.change.also} if told else set[str]()
-    if told and told.change.span:
-        ends = [
-            moved(cell.printed, Fraction(end) * cell.printed.scale + cell.printed.zero)
-            for end in told.change.span
-        ]
-        near |= {respelt(cell.printed, units).text for units in range(min(ends), max(ends) + 1)}
-    ways = [units for units in _slips_of(cell, np.array([])) if respelt(cell.printed, units).text not in near]
-    if not ways:
+    points = {
+        units: _at(problem, cell, units)
+        for units in _slips_of(cell, np.array([]))
+        if not _is_told(cell, told, units)
+    }
+    if not points:
         return told
-    points = problem.restarted(np.stack([_at(problem, cell, units) for units in ways]))
-    left = _off(problem, points).max(axis=1)
-    others = [ways[n] for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS][:LOOKED_INTO]
-    found = [
+    ways = [*points]
+    left = _off(problem, problem.restarted(np.stack([*points.values()]))).max(axis=1)
+    hopeful = [ways[n] for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS][:LOOKED_INTO]
+    slipped = [
         units
-        for units in others
+        for units in hopeful
         if best(*cell.reprinted(problem, problem.box, units), until=1.0).mismatch <= 1
     ]
-    if not found:
-        return told
-    if told is None or not is_slip(cell.printed.text, told.change.would_print):
-        told = _told(cell, problem, problem.box, _at(problem, cell, found[0]), found.pop(0)) or told
-    if told is None or not found:
-        return told
-    also = *told.change.also, *(respelt(cell.printed, units).text for units in found)
+    if slipped and (told is None or not is_slip(cell.printed.text, told.change.would_print)):
+        told = _told(cell, problem, problem.box, points[slipped[0]], slipped[0]) or told
+    if told is None:
+        return None
+    others = (respelt(cell.printed, units).text for units in slipped if not _is_told(cell, told, units))
+    also = tuple(dict.fromkeys((*others, *told.change.also)))[:LISTED]
     return replace(told, change=replace(told.change, also=also))
+
+
+def _is_told(cell: _Cell, told: _Told | None, units: int) -> bool:
+    """Whether what is told of a cell holds a way to print it."""
+    if told is None:
+        return False
+
+    def further(text: str) -> int:
+        return moved(cell.printed, Fraction(text) * cell.printed.scale + cell.printed.zero)
+
+    change = told.change
+    known = {further(text) for text in (change.would_print, *change.also)}
+    low, *_, high = sorted(map(further, change.span)) if change.span else (1, 0)
+    return units in known or low <= units <= high
 
 
 def freed(search: Search, problem: Problem, n: int) -> Array | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -26,7 +26,7 @@ number is met by one of so many by chance: only columns of several are multiplie
 MOST_COUNTED = 100
 """Of more rows n and n - 1 are nearer than the digits that are printed mostly tell, and explain by chance."""
 ANYTHING = 2.0
-"""Of a published value: what moves it by more between the ends of a print explains whatever it is."""
+"""Of a published value: what moves it by more, to the end of a print, explains whatever it is."""
 UNITS = (
     ("rad", "deg"), ("s", "min", "h"), ("mm", "in"), ("m/s", "km/h"), ("Pa", "atm", "mmHg"),
     ("J", "cal", "eV"), ("N", "kgf"),
@@ -179,19 +179,26 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
         for (change, box), start in zip(alive, starts, strict=True)
     ])  # fmt: skip
     for each in told:
-        if _tells(each):
+        if _tells(each, search.groups.values()):
             yield each
         else:
             search.drop(certain=False)
 
 
-def _tells(found: Explained) -> bool:
-    """Whether not every value comes out of what an explanation allows: so many turns hold any sine."""
+def _tells(found: Explained, columns: Iterable[Sequence[int]]) -> bool:
+    """Whether not every value comes out of what an explanation allows: so many turns hold any sine.
+
+    `columns`: the places of each published column.
+    """
     problem, box = found.problem, found.box
     slopes = np.abs(np.nan_to_num(problem.slopes(problem.at(found.best.point), box)))
     moved = (box.low != problem.box.low) | (box.high != problem.box.high)
     reach = slopes[:, moved] @ (box.width[moved] / 2)
-    return bool((reach <= ANYTHING * np.abs(problem.centre))[reach > 0].all())
+    sizes = np.abs(problem.centre)
+    for members in columns:  # a 0 is as large as what stands beside it
+        sizes[members] = sizes[members].max()
+    moves = (reach > 0) & (sizes > 0)
+    return bool((reach <= ANYTHING * sizes)[moves].any() or not moves.any())
 
 
 def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | None:

@@ -36,7 +36,7 @@ class ErrorSource:
     dof: float
     """Degrees of freedom; infinite where its standard uncertainty is known."""
     moves: tuple[tuple[str, int, float], ...]
-    """Columns and rows that it is an error of, and its standard uncertainty there, in SI."""
+    """Columns and rows that it is an error of, and what a standard uncertainty moves each by, in SI."""
     said: str = ""
     """How it was stated; empty if it follows from printed digits."""
     sample: str = ""

@@ -60,7 +60,7 @@ def _shared(inputs: Inputs, values: Values) -> Iterator[ErrorSource]:
         for group in each.groups or (tuple(of_test),):
             every = [one for test in group for one in of_test.get(test, ())]
             errors = {cell: each.error(cell[0], number) for cell, number in every}
-            moves = tuple((*cell, each.move(cell[0], number)) for cell, number in every)
+            moves = tuple((*cell, each.sign(cell[0], number) * errors[cell].u) for cell, number in every)
             named = ""
             if each.groups and own and (axis := own[0].axis):
                 named = f" ({axis.name if len(group) > 1 else axis.row} {', '.join(map(str, group))})"

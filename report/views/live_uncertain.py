@@ -19,6 +19,8 @@ FOLLOWED = frozenset({Shape.NORMAL, Shape.STUDENT, Shape.RECTANGULAR, Shape.TRIA
 """The shapes that a width tells whole."""
 ROUNDING = 1e-12
 """Of a variance: what is left of it beside a part is nothing, if it is less."""
+MOST_DECIDED = 12
+"""Cells on which U decides, of which the page finds out whether second order counts: that takes a while."""
 LARGEST = 4_000_000
 """Given numbers times cells; of a larger sheet the uncertainties stay as issued: they would take too long."""
 
@@ -42,8 +44,10 @@ def follows(report: Report) -> bool:
 def decided(report: Report) -> list[dict[str, Any]]:
     """The cells on which a rule decides, with their limits in SI; those that only a build decides say so.
 
-    The page knows U for one level.
+    The page knows U for one level, and whether second order counts of a few cells.
     """
+    conformities = report.uncertain().conformities if report.inputs.limits else ()
+    by_u = [each.budget.cell for each in conformities if each.limits.guard.times]
 
     def told(found: Conformity) -> dict[str, Any]:
         limits, rule = found.limits, found.limits.guard
@@ -54,9 +58,10 @@ def decided(report: Report) -> list[dict[str, Any]]:
             return entry | {"width": float(rule.width.value)}
         if not rule.times:
             return entry
-        return entry | ({"times": float(rule.times)} if rule.level == LEVEL else {"times": 1, "build": 1})
+        followed = rule.level == LEVEL and found.budget.cell in by_u[:MOST_DECIDED]
+        return entry | ({"times": float(rule.times)} if followed else {"build": 1})
 
-    return [told(found) for found in (report.uncertain().conformities if report.inputs.limits else ())]
+    return list(map(told, conformities))
 
 
 def scatters(report: Report) -> bool:
@@ -73,6 +78,7 @@ def uncertain(report: Report) -> dict[str, Any]:
     return {
         "shared": [
             {"called": each.name, "of": of, **_stated(said, each.name)[0]}
+            | ({"gain": 1} if said.parts[0].scales else {})
             | ({"groups": each.groups} if each.groups else {})
             for each in stated.shared
             for of, said in each.statements.items()

@@ -206,9 +206,9 @@ class _Written:
             style.text(sheet, row, 4, shape, "chosen")
         self.number(row, 5, number, dof, _DOF)
         contribution = each.u / self.scale
-        if source.u:
-            u = source.u / scale
-            self.number(row, 3, size, u, number_format(report.sure(name, source.u)))
+        if width := self.width(source):
+            u = width / scale
+            self.number(row, 3, size, u, number_format(report.sure(name, width)))
             form = style("number", number_format(rounded(contribution / u, 4)))
             slope = self.slope(source) or f"=IF({self.issued},{contribution / u!r},NA())"
             style.formula(sheet, row, 6, slope, contribution / u, form)
@@ -230,7 +230,9 @@ class _Written:
         by, (name, _, size), grid = self.ways, source.moves[0], self.grid
         ways = by.get(name, ())
         every = range(grid[ways[0].first].place.rows) if ways else ()
-        if len(every) > 1 and self.axis is None and source.moves == tuple((name, row, size) for row in every):
+        width = self.width(source)
+        alike = width and source.moves == tuple((name, row, size) for row in every)
+        if len(every) > 1 and self.axis is None and alike:
             told = f"{'-' * (size < 0)}SUM({grid[ways[0].first].place.range()})"
         else:
             terms = [
@@ -241,7 +243,7 @@ class _Written:
             ]
             told = "".join(terms).removeprefix("+")
             told = f"({told})" if len(terms) > 1 or told.startswith("-") else told
-        unit = (grid[name].place.scale if source.u else 1) / self.block.place.scale
+        unit = (grid[name].place.scale if width else 1) / self.block.place.scale
         return f"={told}{factors(unit)[0]}" if 0 < len(told) < LONGEST else ""
 
     @property
@@ -252,7 +254,7 @@ class _Written:
     def times(self, source: ErrorSource, name: str, row: int, u: float) -> tuple[str, str]:
         """The sign of an error in a cell, and its standard uncertainty in SI as a factor, if they differ."""
         sign = "+" if u > 0 else "-"
-        if source.u:
+        if self.width(source):
             return sign, ""
         value, cell = float(self.report.values.value[name][row]), self.grid[checked(name)].place.cell(row)
         unit = factors(self.grid[name].place.scale)[0]
@@ -304,12 +306,20 @@ class _Written:
         told = self.of_share(source, name, each.estimate, source.u, f"ABS(N(B{row + 1}))")
         return told and f"={told}"
 
+    def width(self, source: ErrorSource) -> float | None:
+        """The standard uncertainty of an error where it is, and stays, as large in all cells; else None."""
+        name, *_ = source.moves[0]
+        said = self.report.inputs.uncertainty.again(source.said, self.grid[name].unit, source.shape)
+        gain = len(source.moves) > 1 and said is not None and said.parts[0].scales
+        return None if gain else source.u
+
     def of_share(
         self, source: ErrorSource, name: str, value: float, u: float, size: str, gains: bool = False
     ) -> str:
         """The formula of a standard uncertainty in the unit of a cell, of which it is a share.
 
-        `size`: of the cell; of a gain, which an error is that is nothing else, with its sign.
+        `size`: the formula of how large the number is. `gains`: only if it is a share and nothing else; then
+        that has the number's sign.
         """
         block = self.grid[name]
         said = self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)

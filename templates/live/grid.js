@@ -233,8 +233,8 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
     // Rows as they stand in the file, or numbers of rows before what stands here; in which order, no head tells.
     const added = nextLabel(state, axis), news = first.filter((text) => !labels.includes(text)), wide = width > names.length;
     const numbered = wide && new Set(first).size === rows.length && news.every((text, n) => text === String(added + n));
-    if (wide && !numbered && rows.length > 1 && first.every((text, n) => /^[0-9]+$/.test(text) && Number(text) === Number(first[0]) + n)) return `Nothing was pasted: it begins with numbers of rows (${first[0]} …) that are not here.`;
-    const whole = numbered && width === file.length;
+    if (wide && !numbered) return `Nothing was pasted: ${plural(width, "column")} for ${names.length}: copy them with their heads.`;
+    const whole = numbered && width === file.length && file.includes("test");
     const there = file.filter((name) => LIVE.columns[name] || (!whole && /^u\(/.test(name))), at = whole ? 0 : there.indexOf(cell);
     if ((whole ? inputs : names.slice(0, width)).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
     if (numbered) names = whole ? file.map((name) => (name === "test" ? "" : name)) : ["", ...names];

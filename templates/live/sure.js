@@ -22,7 +22,7 @@ function* errorsIn(look) {
       const rows = group.map((label) => every.indexOf(String(label))).filter((row) => row >= 0);
       const found = rows.map((row) => errorsOf({ ...column, errors: [error] }, "", texts[row])[0]);
       // A gain moves -5 V down and 5 V up.
-      const gain = error.share && !error.u && !error.digits, sign = (row) => (gain && look.trace.sheet.value[of][row] < 0 ? -1 : 1);
+      const sign = (row) => (error.gain && look.trace.sheet.value[of][row] < 0 ? -1 : 1);
       const moves = rows.flatMap((row, n) => (found[n] ? [[of, row, sign(row) * found[n].u]] : []));
       const { axis } = look.trace.declared[of], named = groups ? ` (${group.length > 1 ? axis : LIVE.tables[axis].row} ${group.join(", ")})` : "";
       if (moves.length) (together[called + named] ??= { ...error, called: called + named, moves: [] }).moves.push(...moves);

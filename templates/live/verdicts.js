@@ -53,20 +53,22 @@ function writeVerdicts(look) {
 // --- limits ----------------------------------------------------------------------------------------------
 
 // What is decided on a cell with limits (JCGM 106, 8), as a build decides it: by U of first order where second order does
-// not count. Nothing until a worker has looked at that, and where only a build can tell.
-function decided(look, { of: [name, index], ends: [low, high], times = 0, width, build }) {
-  const row = look.trace.row(name, index);
+// not count, which a worker has to look at first. Empty where only a build can tell.
+function decided(look, { of: [name, index], ends: [low, high], times, width = 0, build }) {
+  const row = look.trace.row(name, index), given = LIVE.columns[name].given;
   if (row < 0 || !look.trace.isOk(name, row)) return "has no value: no decision";
   const value = look.trace.sheet.value[name][row], [least, most] = [low ?? -Infinity, high ?? Infinity];
   if (value < least || value > most) return "does not conform";
-  if (times && !LIVE.shared) return "";
-  const more = times ? look.sure.more[[name, row]] : 0, u = times && look.sure.u(name, row);
-  const guard = width ?? (u && times * look.sure.budget(name, row).factor * u);
-  if (build || (u && more !== 0) || Number.isNaN(guard)) return more === undefined && u > 0 && !carlo.refused ? "…" : "";
+  const u = times && LIVE.shared ? look.sure.u(name, row) : NaN, more = given ? 0 : look.sure.more[[name, row]];
+  if (build || (times && (Number.isNaN(u) || (more !== undefined && more !== 0)))) return "";
+  if (times && more === undefined) return carlo.refused ? "" : "…";
+  const guard = times && u ? times * look.sure.budget(name, row).factor * u : width;
+  if (Number.isNaN(guard)) return "";
   return least + guard <= value && value <= most - guard ? "conforms" : least + guard > most - guard ? "no decision: the guard bands meet" : "lies in the guard band: no decision";
 }
 
 function writeDecided(look) {
+  const isNew = (name) => Array.from(look.trace.sheet.value[name].keys()).some((row) => page.issued.trace.row(name, look.trace.index(name, row)) < 0);
   const told = LIVE.decided.flatMap((rule, n) => [n ? "; " : " With them: ", make("code", {}, rule.cell), ` ${decided(look, rule) || "is decided by a build"}`]);
-  page.decided?.replaceChildren(...told, ".");
+  page.decided?.replaceChildren(...told, LIVE.decided.some(({ of: [name, index] }) => index && isNew(name)) ? "; of new rows a build decides." : ".");
 }

@@ -272,6 +272,10 @@ CASES = {
         method(POLES, "reading,V [V]\n1,10.0\n2,-5.0\n3,2.0\n", 'b = "-3.00 V, u = 0.02"\n', GAIN),
         "1,10.0", "1,-9.0", {("V", 0): -9.0},
     ),
+    "a gain of one size": Case(
+        method(POLES, "reading,V [V]\n1,5.0\n2,5.0\n3,-5.0\n", 'b = "5.0 V, u = 0.02"\n', GAIN),
+        "3,-5.0", "3,4.0", {("V", 2): 4.0}, moves=1,
+    ),
     "digits of other sizes": Case(
         method(SIZES, "reading,V [mV]\n1,1.00\n", 'h = "4.17 mm, u = 7 % of reading"\n', CERTAIN),
         '"4.17', '"0.0128', {("h", 0): 0.0128}, moves=0,

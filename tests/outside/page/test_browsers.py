@@ -109,7 +109,7 @@ def test_edit_is_recalculated_within_what_rounding_may_do(
             labels = ["-".join(map(str, label)) for label in report.values.labels(report.sheet[cell.name])]
             row = labels.index(cell.index)
             difference = abs(mpmath.mpf(float(cell.value)) - judge.judged.value[cell.name][row])
-            units = float(difference / (EPS * judge.bounds.of(cell.name, row, float(difference))))
+            units = float(difference / (EPS * judge.bounds.allowing(cell.name, row, float(difference))))
             worst, where = max((worst, where), (units, f"{cell.name}[{cell.index}]"))
     summary(
         f"page in {request.node.callspec.params['anywhere']}: at most {worst:.2f} eps x condition ({where})"

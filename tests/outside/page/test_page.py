@@ -430,9 +430,10 @@ def test_block_is_pasted(open_page: Open, tmp_path: Path, block: str) -> None:
 def test_pasted_block_makes_new_tests_and_stays_within_its_columns(open_page: Open, tmp_path: Path) -> None:
     live = open_page(permissions=["clipboard-read", "clipboard-write"])
     live.input("e", 5).click()
-    live.page.evaluate("text => navigator.clipboard.writeText(text)", "0.453\t51.03\t999\n0.44\t56.6\t999\n")
-    live.press("Control+v")
-    assert live.text("live-note") == "Pasted, but 1 column had no place."
+    live.paste("0.453\t51.03\t999\n0.44\t56.6\t999\n")
+    assert live.text("live-note") == "Nothing was pasted: 3 columns for 2: copy them with their heads."
+    assert live.text("live-banner") == ""
+    live.paste("0.453\t51.03\n0.44\t56.6\n")
     assert live.cell("v", "6").status == "#INPUT!"
     live.type("v", 6, "5.5")
     six = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
@@ -485,12 +486,14 @@ def test_rows_are_added_whose_numbers_come_next(
     assert driving.differences(live.cells(), driving.built(tmp_path / "folder", rows).values) == []
 
 
-def test_numbers_of_rows_that_are_not_here_are_no_measurements(open_page: Open) -> None:
+@pytest.mark.parametrize("rows", [(101,), (101, 102), (101, 103), (1, 8)])
+def test_numbers_of_rows_that_are_not_here_are_no_measurements(
+    open_page: Open, rows: tuple[int, ...]
+) -> None:
     live = open_page(permissions=["clipboard-read", "clipboard-write"])
     live.input("v", 1).click()
-    live.paste("101\t2.1\t0.5\t24.1\n102\t2.2\t0.5\t25.1\n")
-    said = "it begins with numbers of rows (101 …) that are not here."
-    assert live.text("live-note") == f"Nothing was pasted: {said}"
+    live.paste("".join(f"{row}\t2.1\t0.5\t24.1\n" for row in rows))
+    assert live.text("live-note") == "Nothing was pasted: 4 columns for 3: copy them with their heads."
     assert live.text("live-banner") == ""
 
 

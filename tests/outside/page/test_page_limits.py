@@ -44,6 +44,7 @@ rho_mean = "0.990 .. 1.010 g/cm^3"
 "rho[4]" = "0.990 .. 1.010 g/cm^3, guard = U, level = 99 %"
 "rho[5]" = "0.999 .. 1.001 g/cm^3, guard = U"
 off = "<= 100 kg^2/m^6, guard = U"
+V = "9.8 .. 10.1 cm^3, guard = U"
 """
 
 
@@ -77,6 +78,7 @@ def rebuilt(folder: Path) -> dict[str, str]:
         ({1: "9.95", 2: "9.95", 3: "10.07"}, "9.95 9.95 10.07 10.00 10.00", "10.00(2) cm^3"),
         ({1: "10.2", 4: "10.2", 5: "10.2"}, "10.2 10.00 10.00 10.2 10.2", "10.00(2) cm^3"),
         ({1: "9.91", 2: "9.92", 3: "10.05"}, "9.91 9.92 10.05 10.00 10.00", "10.00(2) cm^3"),
+        ({1: "9.99", 2: "10.01"}, "9.99 10.01 10.00 10.00 10.00", "10.00(2) cm^3"),
         ({"V": "10.09"}, "10.00 10.00 10.00 10.00 10.00", "10.09(2) cm^3"),
         ({"V": "9.85"}, "10.00 10.00 10.00 10.00 10.00", "9.85(2) cm^3"),
     ],
@@ -94,8 +96,20 @@ def test_decisions_are_those_of_a_build(
     for cell, word in now.items():
         if word != "is decided by a build":
             assert again[cell] in word, cell
+    assert "…" not in "".join(now.values())
     assert now["rho[4]"] in ("is decided by a build", "does not conform")
     assert {cell for cell, word in now.items() if word == "is decided by a build"} <= {"rho[4]", "off"}
+
+
+def test_of_rows_that_are_new_a_build_decides(open_page: Callable[..., Live], tmp_path: Path) -> None:
+    folder = folder_of(tmp_path / "issued", "10.00 10.00 10.00 10.00 10.00", "10.00(2) cm^3")
+    build(Study(folder), folder / "out", ("html",))
+    live = open_page(folder / "out" / "report.html")
+    live.click("live-add")
+    live.type("m", 6, "12.00")
+    live.wait_for_draws()
+    told = live.page.locator("main .decided + p.stale").text_content() or ""
+    assert told.endswith("; of new rows a build decides.")
 
 
 def test_of_a_result_at_a_corner_it_is_told_that_nothing_is_known(
