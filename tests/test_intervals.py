@@ -74,6 +74,9 @@ def test_a_root_of_what_begins_at_zero_begins_there() -> None:
     a, b = interval((0.0, 1.0)), interval((2.0, 3.0))
     for found in (np.sqrt(a * b), np.sqrt(a / b), np.sqrt((a * a).total()), (a * b) ** 1.5):
         assert found.low == 0
+    c = interval((-1.0, 2.0))
+    assert (c * c).low >= -1e-300 > (c * (c + 0)).low
+    assert np.sqrt(c * c + c**2).low == 0
     for found in (np.sqrt(a - 1e-9), (a - 1e-9) ** 1.5):
         assert found.low == -np.inf
     assert np.sqrt(a - b).low == -np.inf

@@ -231,6 +231,8 @@ def _at_ends(function: Callable[[Any], Any], a: Intervals) -> tuple[Any, Any]:
 
 
 def _multiply(a: Intervals, b: Intervals) -> Intervals:
+    if a is b:  # printed so, a square is one
+        return _whole_power(a, 2)
     # A number, which has one array for both ends, goes second: two products in place of four.
     if a.low is a.high:
         a, b = b, a
