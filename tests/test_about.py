@@ -186,3 +186,21 @@ def test_degrees_of_freedom_are_printed_truncated_or_before(tmp_path: Path, text
     (tmp_path / "published.csv").write_text(f"{HEADER}\nT,dof(y),,{text},1,,,\n")
     (found,) = Study(tmp_path).refereed.comparisons_u
     assert (found.verdict == "same") is same
+
+
+@pytest.mark.parametrize(("text", "reached"), [("2.1", True), ("2", True), ("2.9", False)])
+def test_degrees_of_freedom_are_looked_for_as_they_are_printed(
+    tmp_path: Path, text: str, reached: bool
+) -> None:
+    """Of two numbers of which u is a share: these print as given while their ratio changes."""
+    code = "from loopsheet import Method, given, let\n\nclass Two(Method):\n    'A sum.'\n"
+    code += "    a = given('1', 'one')\n    b = given('1', 'other')\n    y = let(a + b, 'sum')\n"
+    (tmp_path / "workbook.py").write_text(code)
+    toml = (
+        'workbook = "workbook.py"\n[parameters]\na = "1.0"\nb = "0.1"\n[published]\nfile = "published.csv"\n'
+    )
+    toml += '[uncertainty]\na = "u = 20 % of reading, dof = 2"\nb = "u = 20 % of reading, dof = 2"\n'
+    (tmp_path / "report.toml").write_text(toml)
+    (tmp_path / "published.csv").write_text(f"{HEADER}\nT,dof(y),,{text},1,,,\n")
+    (found,) = Study(tmp_path).refereed.comparisons_u
+    assert (found.verdict == "same" or found.refereed is not None) is reached

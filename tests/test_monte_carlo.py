@@ -203,7 +203,7 @@ def test_draws_that_lose_a_test_are_of_another_estimator(
     assert draw(report.inputs, report.values, budget, 10_000).lost == 0
 
 
-ROOTS = """from sympy import Rational, sqrt
+ROOTS = """from sympy import Rational, log, sqrt
 from loopsheet import Method, given, let
 
 class Roots(Method, source="own", headline="y z"):
@@ -211,12 +211,20 @@ class Roots(Method, source="own", headline="y z"):
     a = given("1", "a number")
     y = let(sqrt(a), "its root")
     z = let(a ** Rational(3, 2), "another")
+    w = let(1 / (1 + (a + sqrt(a)) ** 2), "what is between 0 and 1")
+    v = let(1 / (1 + log(a) ** 2), "another")
 """
 
 
 @pytest.mark.parametrize(
     ("a", "name", "lost"),
-    [("0.010, u = 0.004", "y", 0.0062), ("0.01, u = 0.005", "z", 0.023), ("0.01, u = 0.01", "y", 0.159)],
+    [
+        ("0.010, u = 0.004", "y", 0.0062),
+        ("0.01, u = 0.005", "z", 0.023),
+        ("0.01, u = 0.01", "y", 0.159),
+        ("0.02, u = 0.01", "w", 0.0228),
+        ("0.02, u = 0.01", "v", 0.0228),
+    ],
 )
 def test_a_draw_without_a_root_has_no_value(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], a: str, name: str, lost: float

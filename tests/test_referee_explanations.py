@@ -291,9 +291,10 @@ def of_an_angle(x: str, published: str) -> Referee:
     return found(Sheet((angle, sine, other)), {"x": given}, table)
 
 
-def test_so_many_turns_explain_nothing() -> None:
+@pytest.mark.parametrize(("more", "sine"), [("", ""), (" 90.0", " 1.0000"), (" 0.0", " 0.0000")])
+def test_so_many_turns_explain_nothing(more: str, sine: str) -> None:
     """A million times an angle, in its printed digits, has any sine."""
-    told = of_an_angle("23.0 41.0", "0.5299 0.6561")
+    told = of_an_angle(f"23.0 41.0{more}", f"0.5299 0.6561{sine}")
     assert first(told).would_print == "32.0"
     assert {change.kind for each in told.explanations for change in each.changes} == {"misprint"}
 

@@ -197,8 +197,7 @@ def _tells(found: Explained, columns: Iterable[Sequence[int]]) -> bool:
     sizes = np.abs(problem.centre)
     for members in columns:  # a 0 is as large as what stands beside it
         sizes[members] = sizes[members].max()
-    moves = (reach > 0) & (sizes > 0)
-    return bool((reach <= ANYTHING * sizes)[moves].any() or not moves.any())
+    return bool((reach <= ANYTHING * sizes)[(reach > 0) & (sizes > 0)].all())
 
 
 def _scaled(problem: Problem, members: Sequence[int], times: Fraction) -> Box | None:

@@ -121,7 +121,7 @@ class _Asked:
             inputs = otherwise(self.inputs, numbers)
             asked = _Asked(inputs, compute(inputs).values, self.step, *like)
             like[:] = [asked.spread]
-            return asked.number(about, published.index, 0.0)
+            return asked.number(about, published.index, 0.0, whole=not published.printed.decimals)
 
         here, printed = at(start), published.printed
         slopes = np.array([at(np.where(own, high, start)) - here for own in np.eye(len(start), dtype=bool)])
@@ -168,14 +168,17 @@ class _Asked:
             return Cell(published.cell, index, None, Status.DOMAIN, None, why, there.word)
         if about.kind == "dof" and not prints_same(number, published.printed):
             # Truncated they are for a table of t; some print what they were before.
-            before = self.spread.freedom(about.cell, self.values.row(self.values.sheet[about.cell], index))
+            before = self.number(about, index, 0.0, whole=False)
             number = (
                 before if published.printed.decimals or prints_same(before, published.printed) else number
             )
         return Cell(published.cell, index, number, Status.OK, word=there.word)
 
-    def number(self, about: About, index: tuple[int, ...], tolerance: float) -> float:
-        """What is told, in SI; NaN where nothing is known. Draws tell it to a tolerance."""
+    def number(self, about: About, index: tuple[int, ...], tolerance: float, whole: bool = True) -> float:
+        """What is told, in SI; NaN where nothing is known. Draws tell it to a tolerance.
+
+        `whole`: whether degrees of freedom are truncated.
+        """
         row = self.values.row(self.values.sheet[about.cell], index)
         if about.kind == "r":
             return self._correlation((about.cell, row), (about.other, row))
@@ -188,7 +191,7 @@ class _Asked:
             "u": budget.u,
             "U": about.factor * budget.u or budget.expanded,
             "k": budget.factor,
-            "dof": budget.dof,
+            "dof": budget.dof if whole else self.spread.freedom(about.cell, row),
         }
         return known.get(about.kind, math.sqrt(max(budget.u**2 - budget.second, 0.0)))
 

@@ -52,7 +52,7 @@ def probabilities(found: Conformity) -> Iterator[str]:
     """The conformance probability and the risk that is taken, where a distribution is known."""
     if told := conforming(found):
         yield f"conformance probability {told}"
-    elif found.decision is not Decision.NONE and found.by.because:
+    elif found.decision is not Decision.NONE and math.isnan(found.by.factor) and found.by.because:
         yield f"conformance probability not known: {found.by.because}"
     if told := risk(found):
         yield f"specific {told}"

@@ -258,6 +258,9 @@ class _Draws:
         if self.beside is None or not batch:
             return self._asked(batch, row)
         own, known = self.beside.column(self.name, row, batch)
+        # An enclosure of a function that is bounded may hide that what it is a function of has no value.
+        finite = np.isfinite(own)
+        known = known & (finite.all(axis=-1) if isinstance(row, list) else finite)
         there = np.ones(own.shape, dtype=bool)
         if not known.all():
             left = {name: each[~known] for name, each in batch.items()}

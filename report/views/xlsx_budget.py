@@ -231,9 +231,15 @@ class _Written:
         ways = by.get(name, ())
         every = range(grid[ways[0].first].place.rows) if ways else ()
         width = self.width(source)
-        alike = width and source.moves == tuple((name, row, size) for row in every)
-        if len(every) > 1 and self.axis is None and alike:
-            told = f"{'-' * (size < 0)}SUM({grid[ways[0].first].place.range()})"
+        whole = self.axis is None and len(every) > 1
+        whole = whole and [move[:2] for move in source.moves] == [(name, row) for row in every]
+        slopes = grid[ways[0].first].place.range() if whole else ""
+        if whole and width and len({u for *_, u in source.moves}) == 1:
+            told = f"{'-' * (size < 0)}SUM({slopes})"
+        elif whole and (
+            gain := self.gain(source, f"SUMPRODUCT({slopes},{grid[checked(name)].place.range()})")
+        ):
+            told = gain
         else:
             terms = [
                 f"{sign}{text}{times}"
@@ -257,11 +263,27 @@ class _Written:
         if self.width(source):
             return sign, ""
         value, cell = float(self.report.values.value[name][row]), self.grid[checked(name)].place.cell(row)
-        unit = factors(self.grid[name].place.scale)[0]
-        if told := self.of_share(source, name, value, u, f"N({cell})", gains=True):
-            return "+", f"*({told}){unit}"
+        if told := self.gain(source, f"N({cell})", name):
+            return "+", f"*{told}"
         told = self.of_share(source, name, value, u, f"ABS(N({cell}))")
+        unit = factors(self.grid[name].place.scale)[0]
         return sign, f"*({told}){unit}" if told else f"*{Decimal(repr(abs(u))):f}"
+
+    def gain(self, source: ErrorSource, size: str, name: str = "") -> str:
+        """The formula of what a gain makes of a number or of a sum of products, of such a size; else nothing.
+
+        `name`: its column, if it is not the first that the gain moves.
+        """
+        name = name or source.moves[0][0]
+        place, part = self.grid[name].place, self.part(source, name)
+        if part is None or not part.scales or place.zero:
+            return ""
+        return f"({share_of(part.share, 1.0, part.share, size, 1.0, 1.0)}){factors(place.scale)[0]}"
+
+    def part(self, source: ErrorSource, name: str) -> Any:
+        """What was stated of an error, where that stands alone."""
+        said = self.report.inputs.uncertainty.again(source.said, self.grid[name].unit, source.shape)
+        return said.parts[0] if said else None
 
     def products(self, name: str, row: int) -> Iterator[str]:
         """What is added to the derivative by a row of a given column."""
@@ -308,27 +330,18 @@ class _Written:
 
     def width(self, source: ErrorSource) -> float | None:
         """The standard uncertainty of an error where it is, and stays, as large in all cells; else None."""
-        name, *_ = source.moves[0]
-        said = self.report.inputs.uncertainty.again(source.said, self.grid[name].unit, source.shape)
-        gain = len(source.moves) > 1 and said is not None and said.parts[0].scales
-        return None if gain else source.u
+        part = self.part(source, source.moves[0][0])
+        return None if len(source.moves) > 1 and part is not None and part.scales else source.u
 
-    def of_share(
-        self, source: ErrorSource, name: str, value: float, u: float, size: str, gains: bool = False
-    ) -> str:
+    def of_share(self, source: ErrorSource, name: str, value: float, u: float, size: str) -> str:
         """The formula of a standard uncertainty in the unit of a cell, of which it is a share.
 
-        `size`: the formula of how large the number is. `gains`: only if it is a share and nothing else; then
-        that has the number's sign.
+        `size`: the formula of how large the number is.
         """
-        block = self.grid[name]
-        said = self.report.inputs.uncertainty.again(source.said, block.unit, source.shape)
-        if not (said and said.parts[0].share and not block.place.zero):
+        place, part = self.grid[name].place, self.part(source, name)
+        if part is None or not part.share or place.zero:
             return ""
-        if gains and not said.parts[0].scales:
-            return ""
-        scale = float(block.place.scale)
-        return share_of(said.parts[0].share, value, abs(u), size, scale, scale)
+        return share_of(part.share, value, abs(u), size, float(place.scale), float(place.scale))
 
     def correlated(self, row: int) -> str:
         """What correlated sources add to a contribution."""
@@ -367,7 +380,8 @@ class _Written:
         root, wide = f"SQRT(MAX(0,{first}+{at['second']}))", f"{at['k']}*{at['u']}"
         # Sources that do nothing after an edit may do something to second order.
         stated = f"$D${self.first + 1}:$D${self.last + 1}"
-        known = f"IF(AND({root}=0,SUMSQ({stated})>0),NA(),{root})"
+        gains = any(self.width(each.source) is None for each in self.lines)  # their column says nothing
+        known = f"IF(AND({root}=0,{'TRUE' if gains else f'SUMSQ({stated})>0'}),NA(),{root})"
         sure, form = self.form(budget.u), self.form(budget.expanded)
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={cell}", value, shown),

@@ -227,7 +227,7 @@ function pasteScalars(element, rows, read) {
 // them, else down, into new tests. What is to be said of it: why all of it is refused, or what of it had no place.
 function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, inputs, row: called }) {
   const state = copied(page.history.now), tests = state.tables[axis], before = tests.length, labels = tests.map(({ label }) => String(label)), lost = new Set();
-  const file = Object.keys(LIVE.tables[axis].heads), first = rows.map(([text]) => read(text)), width = rows[0].length;
+  const file = Object.keys(LIVE.tables[axis].heads), first = rows.map(([text]) => read(text)), width = Math.max(...rows.map((fields) => fields.join("\t").trimEnd().split("\t").length));
   let names = head ? head.map((text) => columnAsked(text, inputs, LIVE.tables[axis])) : inputs.slice(inputs.indexOf(cell));
   if (!head) {
     // Rows as they stand in the file, or numbers of rows before what stands here; in which order, no head tells.

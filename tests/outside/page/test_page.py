@@ -433,7 +433,9 @@ def test_pasted_block_makes_new_tests_and_stays_within_its_columns(open_page: Op
     live.paste("0.453\t51.03\t999\n0.44\t56.6\t999\n")
     assert live.text("live-note") == "Nothing was pasted: 3 columns for 2: copy them with their heads."
     assert live.text("live-banner") == ""
-    live.paste("0.453\t51.03\n0.44\t56.6\n")
+    live.paste("0.453\t51.03\n0.44\t56.6\t999\n")
+    assert live.text("live-note") == "Nothing was pasted: 3 columns for 2: copy them with their heads."
+    live.paste("0.453\t51.03\t\n0.44\t56.6\t\n")
     assert live.cell("v", "6").status == "#INPUT!"
     live.type("v", 6, "5.5")
     six = {**driving.paper(), 6: {"v": "5.5", "e": "0.44", "x_p": "56.6"}}
