@@ -100,7 +100,7 @@ def test_what_is_kept_computes_the_same_and_nothing_is_lowered(
 
     def made() -> tuple[str, Any, object]:
         values = engine.evaluate(SHEET, {}, data)
-        found = bounds.bounds(SHEET, layouts, value)
+        found = bounds.RoundingBounds(SHEET, layouts, value)
         told = [values.value["r"].tolist(), values.status["z"].tolist()]
         return Program.of(SHEET).source, told, {n: b.tolist() for n, b in found.items()}
 
