@@ -219,6 +219,7 @@ function onPaste(event) {
 }
 
 function pasteScalars(element, rows, read) {
+  if (rows.some((fields) => fields.filter(Boolean).length > 1)) return "Nothing was pasted: here stands one number in a row.";
   const names = all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell), first = names.indexOf(element.dataset.cell);
   change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(withoutUnit(rows[n][0], name)))));
 }

@@ -58,13 +58,14 @@ function decided(look, { of: [name, index], ends: [low, high], times, width = 0,
   const row = look.trace.row(name, index), given = LIVE.columns[name].given;
   if (row < 0 || !look.trace.isOk(name, row)) return "has no value: no decision";
   const value = look.trace.sheet.value[name][row], [least, most] = [low ?? -Infinity, high ?? Infinity];
-  if (value < least || value > most) return "does not conform";
+  const slack = Math.abs(value) * 2 ** -48; // a build has the double nearest to it, which may be the limit
+  if (value < least - slack || value > most + slack) return "does not conform";
   const u = times && LIVE.shared ? look.sure.u(name, row) : NaN, more = given ? 0 : look.sure.more[[name, row]];
   if (build || (times && (Number.isNaN(u) || (more !== undefined && more !== 0)))) return "";
   if (times && more === undefined) return carlo.refused ? "" : "…";
   const guard = times && u ? times * look.sure.budget(name, row).factor * u : width;
   if (Number.isNaN(guard)) return "";
-  return least + guard <= value && value <= most - guard ? "conforms" : least + guard > most - guard ? "no decision: the guard bands meet" : "lies in the guard band: no decision";
+  return least + guard <= value + slack && value - slack <= most - guard ? "conforms" : least + guard > most - guard ? "no decision: the guard bands meet" : "lies in the guard band: no decision";
 }
 
 function writeDecided(look) {

@@ -101,6 +101,27 @@ def test_decisions_are_those_of_a_build(
     assert {cell for cell, word in now.items() if word == "is decided by a build"} <= {"rho[4]", "off"}
 
 
+@pytest.mark.parametrize(
+    ("mean", "word"), [("2.032", "conforms"), ("2.031", "lies in the guard band: no decision")]
+)
+def test_a_value_on_an_acceptance_limit_is_on_it(
+    open_page: Callable[..., Live], tmp_path: Path, mean: str, word: str
+) -> None:
+    """The mean of eight readings of 2.032 mm is 2.0319999999999995 to whoever adds them up in metres."""
+    code = "from loopsheet import Method, let, mean, measured\n\nclass Mean(Method, headline='w'):\n"
+    code += "    'A mean.'\n    x = measured('mm', 'reading')\n    w = let(mean(x), 'mean')\n"
+    (tmp_path / "workbook.py").write_text(code)
+    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n[limits]\n'
+    (tmp_path / "report.toml").write_text(f'{toml}w = "2.022 .. 2.100 mm, guard = 0.010 mm"\n')
+    rows = "".join(f"{n},2.050\n" for n in range(1, 9))
+    (tmp_path / "d.csv").write_text(f"reading,x [mm]\n{rows}")
+    build(Study(tmp_path), tmp_path / "out", ("html",))
+    live = open_page(tmp_path / "out" / "report.html")
+    live.input("x", 1).click()
+    live.paste(f"{mean}\n" * 8)
+    assert told(live) == {"w": word}
+
+
 def test_of_rows_that_are_new_a_build_decides(open_page: Callable[..., Live], tmp_path: Path) -> None:
     folder = folder_of(tmp_path / "issued", "10.00 10.00 10.00 10.00 10.00", "10.00(2) cm^3")
     build(Study(folder), folder / "out", ("html",))
