@@ -30,3 +30,16 @@ def lost_to_differences(values: Values) -> float:
         return 1.0
     depth, misfit = (np.nanmax(np.abs(values.value[name])) for name in ("x_p", "R_eiv"))
     return float(depth / max(misfit, 1e-300))
+
+
+POLES = """from loopsheet import Method, given, let, mean, measured
+
+
+class Poles(Method, headline="apart level by_b"):
+    V = measured("V", "of both polarities")
+    b = given("V", "another")
+    level = let(mean(V), "mean")
+    apart = let(max(V) - min(V), "range")
+    by_b = let(level / b, "by another")
+"""
+"""Of which all share a gain."""

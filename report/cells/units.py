@@ -191,12 +191,9 @@ def _adds_up(formula: Expr, names: AbstractSet[str]) -> bool:
             return _adds_up(formula.function, names)
         case Mul():
             rest = [factor for factor in formula.args if not _adds_up(factor, names)]
-            sizes = (
-                factor.free_symbols and all(s.is_integer for s in factor.free_symbols) for factor in rest
-            )
-            return len(rest) == len(formula.args) - 1 and all(
-                size or factor == -1 for size, factor in zip(sizes, rest, strict=True)
-            )
+            signs = all(factor == -1 for factor in rest if not factor.free_symbols)
+            sizes = all(symbol.is_integer for factor in rest for symbol in factor.free_symbols)
+            return len(rest) == len(formula.args) - 1 and signs and sizes
     return False
 
 

@@ -22,6 +22,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...derivations.unit_text import parse_unit
@@ -106,6 +107,7 @@ class Stated:
         return name in self.columns and any(part.said == SCATTER for part in self.columns[name].parts)
 
     @staticmethod
+    @lru_cache(maxsize=256)  # a workbook asks it of every row
     def again(said: str, unit: str, shape: Shape) -> StatedErrors | None:
         """What the text behind a number says; None if it is no statement that stands alone."""
         try:

@@ -278,7 +278,7 @@ class _Written:
         place, part = self.grid[name].place, self.part(source, name)
         if part is None or not part.scales or place.zero:
             return ""
-        return f"({share_of(part.share, 1.0, part.share, size, 1.0, 1.0)}){factors(place.scale)[0]}"
+        return f"({part.share:.15g}*{size}){factors(place.scale)[0]}"
 
     def part(self, source: ErrorSource, name: str) -> Any:
         """What was stated of an error, where that stands alone."""

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import pytest
 import spreadsheets
+from uncertain_data import POLES
 
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.uncertain import Decision
@@ -218,16 +219,6 @@ class Order(Method, headline="typical low swing wide skew"):
 """
 PAIRS = "reading,instrument,x [1],y [mm]\n1,A,1.0,{}\n2,B,1.5,2.25\n3,A,2.2,1.75\n4,B,1.1,2.20\n"
 PAIRS += "5,A,1.6,1.62\n6,B,2,3.1\n"
-POLES = """from loopsheet import Method, given, let, mean, measured
-
-
-class Poles(Method, headline="apart level by_b"):
-    V = measured("V", "of both polarities")
-    b = given("V", "another")
-    level = let(mean(V), "mean")
-    apart = let(max(V) - min(V), "range")
-    by_b = let(level / b, "by another")
-"""
 GAIN = '[uncertainty]\nV = "u = 0.01"\n[uncertainty.shared.gain]\nof = ["V", "b"]\n'
 GAIN += 'stated = "u = 1 % of reading"\n'
 NEAR_A_LINE = "reading,instrument,x [1],y [mm]\n1,A,1.0,{}\n2,B,1.5,1.93\n3,A,2.2,2.31\n4,B,1.1,1.70\n"

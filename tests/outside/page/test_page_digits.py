@@ -10,6 +10,7 @@ from shutil import copytree
 import driving
 import pytest
 from driving import Live
+from uncertain_data import POLES
 
 from loopsheet.report.build import build
 from loopsheet.report.cli import main
@@ -289,16 +290,6 @@ def test_what_an_edit_leaves_of_an_uncertainty_is_struck_out(open_page: Open, tm
     assert (told.evaluate(style), note.is_visible()) == ("none", False)
 
 
-POLES = """from loopsheet import Method, given, let, mean, measured
-
-
-class Poles(Method, headline="apart level by_b"):
-    V = measured("V", "of both polarities")
-    b = given("V", "another")
-    level = let(mean(V), "mean")
-    apart = let(max(V) - min(V), "range")
-    by_b = let(level / b, "by another")
-"""
 GAIN = """workbook = "workbook.py"
 [parameters]
 b = "-3.00 V, u = 0.02"
