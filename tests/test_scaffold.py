@@ -65,7 +65,7 @@ file = "measurements.csv"
 # x_p = "truncated"                    # if digits were cut off; without this, "rounded"
 
 # [expected]                             # cells and tests that are odd, and why
-# "test 3" = "double bounce heard"
+# "test 3" = "the bench was knocked"
 
 # [published]                            # values to compare with, if there are any
 # file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason

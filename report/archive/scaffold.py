@@ -206,7 +206,7 @@ def _lines(workbook: Workbook, name: str) -> Iterator[str]:
         f'# {last} = "truncated"                    # if digits were cut off; without this, "rounded"',
         "",
         "# [expected]                             # cells and tests that are odd, and why",
-        f'# "{table.row if table.name else "test"} 3" = "double bounce heard"',
+        f'# "{table.row} 3" = "the bench was knocked"',
         "",
         "# [published]                            # values to compare with, if there are any",
         '# file = "published.csv"                 # source,cell,index,value,unit,expect,recomputed,reason',
