@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -215,3 +216,37 @@ def test_a_sign_that_was_lost(
         RUNS.replace("m [g]", f"m [{unit}]"),
     )
     assert told[0][0].startswith("m[2] is printed 10.3941 for -10.3941")
+
+
+ROUND = '''\
+from loopsheet import Method, given, let, mean, measured
+
+
+class Bar(Method, source="own", rows="bars"):
+    """Stress of a bar."""
+
+    x = measured("1", "strain", positive=True)
+    E = given("MPa", "modulus", positive=True)
+    s = let(E * x, "stress", "MPa")
+    s_m = let(mean(s), "mean stress", "MPa")
+'''
+BARS = "bar,x [1]\n1,0.0012345\n2,0.0023456\n3,0.0034567\n"
+
+
+@pytest.mark.parametrize(
+    ("E", "values", "told"),
+    [
+        # 210 345 MPa, known to four digits and printed in full.
+        (
+            "210300",
+            ("259.67", "493.39", "727.10"),
+            "the zeros at the end of E are no digits: 210300 is 2.103e5",
+        ),
+        # What is printed to tens is 259.7, 493.4 and 727.1.
+        ("210345", ("260", "490", "730"), "the zeros at the end of s of text are no digits: 260 is 2.6e2"),
+    ],
+)
+def test_zeros_may_be_no_digits(E: str, values: Sequence[str], told: str, tmp_path: Path) -> None:
+    published = "".join(f"text,s,{n},{value},MPa\n" for n, value in enumerate(values, start=1))
+    found = judged(tmp_path, ROUND, published, f'[parameters]\nE = "{E} MPa"\n', BARS)
+    assert [told] in found

@@ -49,13 +49,12 @@ class Unknown:
     reach: float = 0.0
     """How far from what is printed it may be all the same, in SI."""
 
-    def interval(self, printed: Printed | None = None, mode: str = "") -> tuple[float, float]:
+    def interval(self, printed: Printed | None = None) -> tuple[float, float]:
         """Where it may lie, in SI, by its digits and by what is stated of it; or if it were printed so."""
         printed = printed or self.printed
         if printed is None:
             ends = (self.start / FREE, self.start * FREE)
             return self.allowed.clip(min(ends), max(ends))
-        printed = replace(printed, mode=mode) if mode else printed
         (low, high), value = map(float, printed.interval), float(printed.value)
         low, high = max(low, value - self.held), min(high, value + self.held)
         return self.allowed.clip(min(low, value - self.reach), max(high, value + self.reach))

@@ -27,7 +27,7 @@ Kind = Callable[[Search], Iterator[Explained]]
 KINDS: tuple[tuple[Kind, ...], ...] = (
     (habits.computed_from_printed, habits.every_row, habits.other_conventions, habits.rounded_constants),
     (
-        scales.truncated_inputs, scales.truncated_tables, exchanged_inputs, exchanged_in_tables,
+        scales.shortened_inputs, scales.shortened_tables, exchanged_inputs, exchanged_in_tables,
         exchanged_rows, columns, habits.without_a_test, habits.other_rows, habits.neglected,
         scales.misplaced_inputs, scales.misplaced_tables, misprints,
     ),
@@ -77,8 +77,8 @@ def possibilities(problem: Problem) -> tuple[Explained, ...]:
     search = Search(problem)
     kinds = (
         *KINDS[0],
-        scales.truncated_inputs,
-        scales.truncated_tables,
+        scales.shortened_inputs,
+        scales.shortened_tables,
         habits.neglected,
         scales.misplaced_together,
         slipped,

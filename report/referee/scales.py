@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -34,39 +35,60 @@ UNITS = (
 """Units of a kind that are no powers of ten of one another: one may be taken for the other."""
 
 
-def truncated_inputs(search: Search) -> Iterator[Explained]:
-    """A given column that was cut where it is said to be rounded, or the reverse."""
+def shortened_inputs(search: Search) -> Iterator[Explained]:
+    """A given column whose numbers were shortened otherwise than is said."""
     problem = search.problem
     for name, members in problem.rows.items():
-        printed = problem.unknowns[members[0]].printed
-        if printed is None or problem.sheet[name].exact or not problem.campaign.suspects(name):
+        printed = [problem.unknowns[n].printed for n in members]
+        if None in printed or problem.sheet[name].exact or not problem.campaign.suspects(name):
             continue
         if not search.worth(search.resting_on(members)):
             continue
-        was, would = printed.mode, _other(printed.mode)
-        low, high = zip(*(problem.unknowns[n].interval(mode=would) for n in members), strict=True)
-        if np.array_equal((low, high), (problem.box.low[members], problem.box.high[members])):
-            continue  # of what is exact nothing was cut
-        middles = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
-        change = Change("truncated", name, (), INPUT, was, would)
-        yield from search.if_met([change], problem, problem.box.moved(members, low, high, middles))
+        for change, prints in _shortened([each for each in printed if each]):
+            ends = zip(members, prints, strict=True)
+            low, high = zip(*(problem.unknowns[n].interval(each) for n, each in ends), strict=True)
+            if np.array_equal((low, high), (problem.box.low[members], problem.box.high[members])):
+                continue  # of what is exact nothing was cut
+            middles = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
+            box = problem.box.moved(members, low, high, middles)
+            yield from search.if_met([replace(change, cell=name, source=INPUT)], problem, box)
 
 
-def truncated_tables(search: Search) -> Iterator[Explained]:
-    """A published column that was cut where it is said to be rounded, or the reverse."""
+def shortened_tables(search: Search) -> Iterator[Explained]:
+    """A published column whose numbers were shortened otherwise than is said."""
     problem = search.problem
     for (source, cell), members in search.groups.items():
         if not search.worth(members):
             continue
-        was = problem.published[members[0]].printed.mode
-        changed = problem.reprinted({
-            n: replace(problem.published[n].printed, mode=_other(was)) for n in members
-        })  # fmt: skip
-        yield from search.if_met([Change("truncated", cell, (), source, was, _other(was))], changed)
+        for change, prints in _shortened([problem.published[n].printed for n in members]):
+            changed = problem.reprinted(dict(zip(members, prints, strict=True)))
+            yield from search.if_met([replace(change, cell=cell, source=source)], changed)
 
 
-def _other(mode: str) -> str:
-    return "rounded" if mode == "truncated" else "truncated"
+def _shortened(printed: Sequence[Printed]) -> Iterator[tuple[Change, list[Printed]]]:
+    """The other ways in which a column may have been shortened, and its numbers as they were printed then."""
+    was = printed[0].mode
+    would = "rounded" if was == "truncated" else "truncated"
+    yield Change("truncated", "", (), "", was, would), [replace(each, mode=would) for each in printed]
+    # Of a number with a stated uncertainty no digit says how well it is known.
+    texts = [without_zeros(each.text) if each.stated is None else each.text for each in printed]
+    prints = [replace(each, text=text) for each, text in zip(printed, texts, strict=True)]
+    pairs = ((each.text, text) for each, text in zip(printed, texts, strict=True))
+    if first := next((pair for pair in pairs if pair[0] != pair[1]), None):
+        yield Change("zeros", "", (), "", *first), prints
+
+
+def without_zeros(text: str) -> str:
+    """An integer without the zeros at its end, which only say how large it is: of two digits at least.
+
+    >>> [without_zeros(text) for text in ("12300", "-9000", "50", "9.800", "1234")]
+    ['1.23e4', '-9.0e3', '50', '9.800', '1234']
+    """
+    whole = re.fullmatch(r"([+-]?[1-9])(\d+?)(0+)", text)
+    if whole is None:
+        return text
+    first, more, zeros = whole.groups()
+    return f"{first}.{more}e{len(more) + len(zeros)}"
 
 
 _Way = tuple[Change, tuple[Fraction, ...]]

@@ -112,10 +112,11 @@ class Change:
 
     kind: str
     """``printed`` (computed from rounded, printed numbers), ``parameter`` (a convention is another),
-    ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``unit`` (off by
-    a power of ten, or of another unit), ``factor`` (doubled, divided by n for n - 1, ...), ``rows`` (a mean
-    over other rows), ``neglect`` (a column was taken as 0), ``label`` (two numbers or rows stand in each
-    other's place, or a row holds another column) or ``order`` (a list stands in another order)."""
+    ``misprint`` (one cell has other digits), ``truncated`` (a column was cut, not rounded), ``zeros`` (those
+    at its end are no digits), ``unit`` (off by a power of ten, or of another unit), ``factor`` (doubled,
+    divided by n for n - 1, ...), ``rows`` (a mean over other rows), ``neglect`` (a column was taken as 0),
+    ``label`` (two numbers or rows stand in each other's place, or a row holds another column) or ``order``
+    (a list stands in another order)."""
     cell: str
     """The column; empty for a row of all columns of a table, and for what was computed of a whole table."""
     index: tuple[int, ...]

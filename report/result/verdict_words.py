@@ -29,6 +29,7 @@ CALLED = {
 POSSIBLE = {
     "misprint": "possible misprint",
     "truncated": "possible truncation",
+    "zeros": "possible zeros",
     "label": "possible confusion",
     "order": "possible disorder",
     "unit": "possible unit",
@@ -46,8 +47,9 @@ MOST_TOLD = 5
 """So many explanations are told in sentences."""
 NOTHING_EXPLAINS = (
     "no small change of what is printed was found with which everything published comes out: no misprinted "
-    "number or two, no truncated column, no other unit, nothing doubled or halved, no mean over other rows, "
-    "nothing exchanged or in another order, nothing computed from rounded numbers or constants, no other "
+    "number or two, no truncated column, no zeros that are no digits, no other unit, nothing doubled or "
+    "halved, no mean over other rows, nothing exchanged or in another order, nothing computed from rounded "
+    "numbers or constants, no other "
     "convention"
 )
 
@@ -319,6 +321,8 @@ def claimed(change: verdict.Change) -> str:
             return f"{cell} was {would}{_or(change)}, not {printed}"
         case "truncated":
             return f"{cell}{of} was {would}, not {printed}"
+        case "zeros":
+            return f"the zeros at the end of {cell}{of} are no digits: {printed} is {would}"
         case "unit" | "factor" if not change.index:
             if not cell:
                 return f"all that is given in {printed} was taken in {would}"
@@ -361,6 +365,8 @@ def _suggested(change: verdict.Change) -> str:
     match change.kind:
         case "truncated" | "parameter":
             return f"may have been {would}, not {printed}"
+        case "zeros":
+            return f"may have zeros at its end that are no digits: {printed} is {would}"
         case "unit" | "factor" if not change.index:
             if printed:
                 return f"may be in {would}, not in {printed}"
