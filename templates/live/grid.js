@@ -242,10 +242,12 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   }
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
   if (why) return `Nothing was pasted: ${why}.`;
-  const at = names.indexOf("");
+  const at = names.indexOf(""), numbers = at < 0 ? [] : rows.map((fields) => read(fields[at]));
+  const twice = numbers.find((text, n) => numbers.indexOf(text) !== n);
+  if (twice !== undefined) return `Nothing was pasted: ${called} ${twice} stands twice in it.`;
   let rowsLost = 0;
   for (const [down, fields] of rows.entries()) {
-    const label = at < 0 ? index : read(fields[at]), place = labels.indexOf(label) + (at < 0 ? down : 0);
+    const label = numbers[down] ?? index, place = labels.indexOf(label) + (at < 0 ? down : 0);
     const isNew = at < 0 ? place >= 0 : label === String(nextLabel(state, axis));
     const test = tests[place] ?? (isNew && !isGrouped(axis) ? newTest(state, axis) : null); // of no group
     if (!test) rowsLost += 1;

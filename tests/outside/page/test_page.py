@@ -508,9 +508,10 @@ def test_numbers_of_rows_that_are_not_here_are_no_measurements(
             "v\tu(v)\n2.4\t0.01\n",
             "no column u(v) is typed here: leave it out, or write u behind the number, as 46.7(5).",
         ),
+        ("test\tv\n3\t3.5\n2\t3.1\n3\t3.6\n", "test 3 stands twice in it."),
     ],
 )
-def test_another_unit_or_no_known_name_is_refused(open_page: Open, block: str, said: str) -> None:
+def test_a_block_that_nobody_can_place_is_refused(open_page: Open, block: str, said: str) -> None:
     live = open_page(permissions=["clipboard-read", "clipboard-write"])
     live.input("v", 1).click()
     live.paste(block)
