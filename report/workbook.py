@@ -170,6 +170,10 @@ class SquareSum:
     most."""
     deviation: str = ""
     """The column of how far each row lies off, in standard deviations."""
+    residual: str = ""
+    weight: str = ""
+    """`residual` and `weight`: the columns of what the curve leaves of each row, and of one over the variance
+    that its errors give to that."""
     by_scatter: Mapping[str, str] = field(default_factory=dict)
     """By the cell of what was fitted, the cell of its standard uncertainty by how far rows lie off."""
 

@@ -14,7 +14,7 @@ from ..cells.values import Cell
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import RARE, SIGNIFICANT, freedom, head, largest, tail, tied
+from ..result.chi_square import RARE, SIGNIFICANT, head, independent, largest, tail, tied
 from ..result.conformity import decision, undecided
 from ..result.numbers import probability, rounded
 from ..result.statements import statements
@@ -110,14 +110,16 @@ class Said:
         return () if p is None else self.rich(probability(p))
 
     def _followed(self, kind: str, what: str, p: float | None) -> tree.Inlines:
-        return (tree.Count(text, kind, what),) if (text := self._probable(p)) else ()
+        text = self._probable(p)
+        # A page has the sum of squares of the fit, and no other.
+        return (tree.Count(text, kind, what),) if text and not tied(self.report) else text
 
     def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
         """How likely such a sum of squares is; None without one, and if nothing or no chance is left over."""
         declared = {squares.name: squares for squares in self.report.workbook.squares}
         squares = declared[_known("sum of squares", what, declared)]
-        value, dof = self.report.values.scalar(squares.name), freedom(squares, self.report)
-        return how(value, dof) if dof > 0 and value == value and not tied(self.report) else None
+        known = independent(squares, self.report)
+        return how(*known) if known else None
 
     def _farthest(self, name: str) -> tuple[str, float] | None:
         """The row whose deviation, in standard deviations, is too large for chance, and that chance."""

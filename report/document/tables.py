@@ -16,7 +16,7 @@ from ..inputs.published import PublishedValue
 from ..messages.errors import listing, sentence_case
 from ..quantity import span
 from ..result import verdict_words as words
-from ..result.chi_square import freedom, number, tail, tied
+from ..result.chi_square import freedom, independent, number, tail
 from ..result.conformity import accepted, conforming, risk
 from ..result.numbers import Numeral, decimals, probability, read, rounded, table_format
 from ..result.result import Comparison
@@ -144,9 +144,8 @@ class Tables:
         """How likely each sum of squares of the workbook is, if chance alone made it."""
 
         def likely(each: SquareSum) -> Inlines:
-            value, dof = self.report.values.scalar(each.name), freedom(each, self.report)
-            known = dof > 0 and value == value and not tied(self.report)
-            return self.rich(probability(tail(value, dof))) if known else ()
+            known = independent(each, self.report)
+            return self.rich(probability(tail(*known))) if known else ()
 
         def head(each: SquareSum) -> Head:
             return self.material.head(self.report.sheet[each.name])

@@ -20,7 +20,7 @@ from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
 from ..messages.errors import listing
 from ..quantity import behind
-from ..result.chi_square import RARE, freedom, head, tail, tied, ties
+from ..result.chi_square import RARE, freedom, head, independent, tail, tied, ties
 from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
@@ -370,12 +370,17 @@ class _Oddities:
         if cell.value is None or dof < 1:
             said = "no value" if cell.value is None else f"nothing left over of {squares.axis}"
             return Check(SQUARES, name, True, f"{name}: {said}", self.inputs.place)
-        if tied(self.report):
+        known, together = independent(squares, self.report), tied(self.report)
+        if known is None:
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
-        found = f"{name} = {self.report.text(cell)} on {dof} degrees of freedom"
-        large, small = tail(cell.value, dof), head(cell.value, dof)
-        instead = self.without(squares) if large < RARE and squares.deviation else ""
+        found = f"{name} = {self.report.text(cell)}"
+        if together:
+            found += f", {rounded(known[0], 2).plain} with what errors have in common,"
+        found += f" on {known[1]} degrees of freedom"
+        large, small = tail(*known), head(*known)
+        # What is left without some rows is a sum by the weights of the fit.
+        instead = self.without(squares) if large < RARE and squares.deviation and not together else ""
         return self.by_chance(cell, found, squares.axis, large, small, instead)
 
     def without(self, squares: SquareSum) -> str:

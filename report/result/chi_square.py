@@ -42,6 +42,18 @@ def freedom(squares: SquareSum, report: Report) -> int:
     return squares.freedom(report.values.rows_summed(squares.name, squares.axis))
 
 
+def independent(squares: SquareSum, report: Report) -> tuple[float, int] | None:
+    """A sum of squares of independent errors, and its degrees of freedom; None where there is none.
+
+    Where errors are shared or correlated it is not that of the fit, whose weights leave that out.
+    """
+    if tied(report):
+        known = report.uncertain().misfits.get(squares.name)
+        return (known.chi2, known.dof) if known else None
+    value, dof = report.values.scalar(squares.name), freedom(squares, report)
+    return (value, dof) if dof > 0 and value == value else None
+
+
 def number(squares: SquareSum, report: Report) -> int:
     """How many squares there are in a sum."""
     return squares.each * report.values.rows_summed(squares.name, squares.axis)

@@ -468,6 +468,16 @@ class Spread:
         moved = self.contributions([(curve.observed, row) for row in rows])
         return self._misfit(residuals, own, moved, fitted)
 
+    def misfit_of_squares(self, squares: SquareSum) -> Misfit | None:
+        """The same of a sum of squares: with what the errors of its rows have in common."""
+        rows = self._valued(squares.residual)
+        if not squares.fitted < len(rows) <= MOST_ROWS or not self.knows(squares.residual):
+            return None
+        cells = [(squares.residual, row) for row in rows]
+        residuals, weights = (self.values.value[name][rows] for name in (squares.residual, squares.weight))
+        moved = self.contributions(cells)
+        return self._misfit(residuals, self.covariance(cells), moved, squares.fitted, weights**-0.5)
+
     def misfit_of_mean(self, name: str) -> Misfit | None:
         """The same of a column about its mean: stated is what makes its rows differ, all of it."""
         rows = self._valued(name)
@@ -486,15 +496,18 @@ class Spread:
         """The rows that have a value."""
         return np.flatnonzero(self.values.status[name] == Status.OK).tolist()
 
-    def _misfit(self, residuals: Array, covariance: Array, moved: Array, fitted: int) -> Misfit | None:
+    def _misfit(
+        self, residuals: Array, covariance: Array, moved: Array, fitted: int, size: Array | None = None
+    ) -> Misfit | None:
         """`moved`: what every error does to what was observed, of shape (rows, errors)."""
-        size = np.sqrt(self._variance(moved))
+        u = np.sqrt(self._variance(moved))
+        size = u if size is None else size
         with np.errstate(all="ignore"):
             known = np.all(size > 0) and np.isfinite(np.outer(size, size)).all()
         if not known or not np.isfinite(covariance).all():
             return None
         chi2, dof = least_squares_of_errors(residuals, covariance, size, fitted)
-        each = zip(moved, size.tolist(), strict=True)
+        each = zip(moved, u.tolist(), strict=True)
         known_by = min(of_sum(self.sources, own, self._pairs, u)[1] for own, u in each)
         moving = np.any(moved != 0, axis=0)
         stated = any(source.said for source, moves in zip(self.sources, moving, strict=True) if moves)
@@ -541,6 +554,7 @@ def _least(column: Column) -> float:
 def _misfits(spread: Spread, workbook: Workbook) -> Iterator[tuple[str, Misfit | None]]:
     yield from ((curve.name, spread.misfit(curve)) for curve in workbook.curves)
     yield from ((name, spread.misfit_of_mean(of)) for name, of in workbook.means)
+    yield from ((each.name, spread.misfit_of_squares(each)) for each in workbook.squares if each.residual)
 
 
 def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Uncertainties:

@@ -434,7 +434,13 @@ WORKBOOK = replace(
     least=2,
     squares=(
         SquareSum(
-            "chi2_eiv", axis="tests", fitted=2, deviation="z_eiv", by_scatter={"alpha_eiv": "u_birge_eiv"}
+            "chi2_eiv",
+            axis="tests",
+            fitted=2,
+            deviation="z_eiv",
+            residual="R_eiv",
+            weight="W_eiv",
+            by_scatter={"alpha_eiv": "u_birge_eiv"},
         ),
     ),
     fits=("alpha_mean", "alpha_log", "alpha_lin"),
