@@ -71,6 +71,12 @@ Pair = tuple[Equation, sp.Expr]
 """A premise, and what it is solved for."""
 
 
+def _has_power_of(each: sp.Expr, model: sp.Expr) -> bool:
+    """Whether there is a number for positive ones alone."""
+    powers = (power.base for power in model.atoms(sp.Pow) if not power.exp.is_integer)
+    return any(of.has(each) for of in (*powers, *model.atoms(sp.log)))
+
+
 def _step(claim: Equation, pairs: Iterable[Pair], says: str) -> Step:
     premises, unknowns = zip(*pairs, strict=True)
     return Step(claim, premises, unknowns, says)
@@ -134,7 +140,14 @@ class LeastSquares:
         self.parameters, self.words = tuple(parameters), tuple(parameters.values())
         self.index, self.size, self.number, self.own, self.rows = index, size, number, own, rows
         self.count = len(self.parameters)
-        feet = {each: self._cell(f"{called}_at_{each.base}", rows=True) for each in others}
+        feet = {
+            each: self._cell(
+                f"{called}_at_{each.base}",
+                rows=True,
+                positive=bool(each.is_positive) and _has_power_of(each, model),
+            )
+            for each in others
+        }
         self.feet, self.others, self.true = feet, others, model.xreplace(feet)
         self.u: sp.Expr = sp.Integer(1) if u is None else u
         self.tilts = {each: sp.diff(self.true, foot) for each, foot in feet.items()}
@@ -159,22 +172,35 @@ class LeastSquares:
         self._found: dict[str, FitQuantity] = {}
         self.claims: list[Derivation] = []
         self.weight: sp.Expr = sp.Integer(1)
-        bent = any(tilt.has(*feet.values()) for tilt in self.tilts.values())
-        beyond = (tilt * (each - feet[each]) for each, tilt in self.tilts.items())
-        self.tangent = self.true + sp.Add(*beyond) if bent else model
+        tilts = self.tilts
+        bent = any(tilt.has(*feet.values()) for tilt in tilts.values())
+        if bent:  # nothing of what is proved hangs on what these are
+            self.tilts = {
+                each: self._column(f"B{n}", tilt, f"slope of the model by {each.base}", f"B_{{{n}%s}}")
+                for n, (each, tilt) in enumerate(tilts.items(), start=1)
+            }
+
+        def tangent(tilts: Mapping[sp.Indexed, sp.Expr]) -> sp.Expr:
+            return self.true + sp.Add(*(tilt * (each - feet[each]) for each, tilt in tilts.items()))
+
+        self.tangent = tangent(tilts) if bent else model
         if u is not None:
-            spread = u**2 + sp.Add(*((tilt * others[each]) ** 2 for each, tilt in self.tilts.items()))
-            above = sp.StrictGreaterThan(spread if feet else u, 0)
+
+            def spread(tilts: Mapping[sp.Indexed, sp.Expr]) -> sp.Expr:
+                return u**2 + sp.Add(*((tilt * others[each]) ** 2 for each, tilt in tilts.items()))
+
+            above = sp.StrictGreaterThan(spread(tilts) if feet else u, 0)
             needs = (
                 ()
                 if above == sp.true
                 else ((above, "a standard uncertainty that rows are weighed by is above zero"),)
             )
-            self.weighing = 1 / spread
+            self.weighing, by_columns = (1 / spread(each) for each in (tilts, self.tilts))
             self.weight = self._helper(
-                "w", self.weighing, "weight of a row", "w%s", rows=True, positive=True, needs=needs
+                "w", by_columns, "weight of a row", "w%s", rows=True, positive=True, needs=needs
             )
-        self.fitted = self._result("fitted", self.tangent, f"{what}, fitted", rows=True)
+        fitted = tangent(self.tilts) if bent else model
+        self.fitted = self._result("fitted", fitted, f"{what}, fitted", rows=True)
         self.residual = self._result("residual", observed - self.fitted, f"{what}, residual", rows=True)
         self._orthogonal()
         self._solve()
@@ -339,7 +365,12 @@ class LeastSquares:
 
         # A model that goes through all rows leaves rounding only, which any step makes more or less.
         now = (1 + _ROUNDING) * self.total(self.residual**2) + _NOTHING * self.total(self.observed**2)
-        ways = [(part, squares(part) <= now) for part in _PARTS[:-1]]
+        sums = [squares(part) for part in _PARTS[:-1]]
+        if self.feet:  # too long for one formula of a worksheet
+            titles = [f"sum of squares with {part} of the step" for part in _PARTS]
+            pairs = enumerate(zip(sums, titles, strict=False), start=1)
+            sums = [self._helper(f"Q{n}", total, title, f"Q_{{{n}}}") for n, (total, title) in pairs]
+        ways = [(part, total <= now) for part, total in zip(_PARTS, sums, strict=False)]
         value = sp.Piecewise(*ways, (_PARTS[-1], True))
         return self._helper("part", value, "part of the step that is taken", r"\lambda")
 

@@ -145,6 +145,7 @@ MODELS: dict[str, tuple[Expr, tuple[float, float], Any]] = {
     "a growth": (a * (1 - exp(-b * x)), (3, 0.4), lambda x, z: 3 * (1 - np.exp(-0.4 * x))),
     "of two": (a * x + b * z**2, (1, 0.5), lambda x, z: x + z**2 / 2),
     "a product": (a * x * exp(-b * z), (2, 0.2), lambda x, z: 2 * x * np.exp(-0.2 * z)),
+    "a fraction": (a * b * x / (1 + b * x), (4, 0.5), lambda x, z: 2 * x / (1 + 0.5 * x)),
 }
 
 
@@ -224,7 +225,7 @@ def squares(name: str) -> LeastSquares:
     )
 
 
-@pytest.mark.parametrize("name", ["a growth", "of two"])
+@pytest.mark.parametrize("name", ["a growth", "of two", "a fraction", "a power"])
 def test_points_and_parameters_follow_from_the_sum_of_squares_of_both(name: str) -> None:
     entries = tuple(squares(name).entries)
     found = [proof for proof in prove(Ledger(entries)) if proof.status is not ProofStatus.DEFINITION]
