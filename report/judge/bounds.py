@@ -56,6 +56,7 @@ class RoundingBounds(Mapping[str, Array]):
         self.sheet, self.layouts, self.value = sheet, layouts, value
         self.tried: list[dict[str, Array]] = []
         self.bare = self._at(value)
+        self.room = {name: np.where(np.isfinite(own), own, 0.0) for name, own in self.bare.items()}
 
     def __getitem__(self, name: str) -> Array:
         return self.bare[name]
@@ -76,16 +77,27 @@ class RoundingBounds(Mapping[str, Array]):
         Not less than those where the values are; what is not known there stays.
         """
         while len(self.tried) <= number:
-            draw = np.random.default_rng(len(self.tried)).uniform
-            moved, found = {}, {}
-            for name, own in self.value.items():
-                room = LIMIT * EPS * np.where(np.isfinite(self.bare[name]), self.bare[name], 0.0)
-                moved[name] = own + room * draw(-1, 1, own.size)
-            for name, there in self._at(moved).items():
+            found = {}
+            for name, there in self._near(len(self.tried)).items():
                 here = self.tried[-1][name] if self.tried else self.bare[name]
                 found[name] = np.where(np.isfinite(there), np.maximum(here, there), here)
             self.tried.append(found)
         return self.tried[number]
+
+    def _near(self, seed: int) -> dict[str, Array]:
+        """The bounds where all values are off.
+
+        Of a root of zero nothing is known where the values are. Next to them it is, and then of what is
+        computed from it, too.
+        """
+        while True:
+            draw = np.random.default_rng(seed).uniform
+            moves = {name: LIMIT * EPS * room * draw(-1, 1, room.size) for name, room in self.room.items()}
+            there = self._at({name: own + moves[name] for name, own in self.value.items()})
+            news = {name: (room == 0) & np.isfinite(there[name]) for name, room in self.room.items()}
+            if not any(np.any(new & (there[name] > 0)) for name, new in news.items()):
+                return there
+            self.room = {name: np.where(news[name], there[name], room) for name, room in self.room.items()}
 
     def allowing(self, name: str, row: int, difference: float) -> float:
         """The bound for a cell that differs by so much: that where its values are, if it is enough."""
