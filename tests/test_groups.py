@@ -589,3 +589,44 @@ def test_the_first_worksheet_tells_results_with_their_uncertainties(tmp_path: Pa
     assert told == of
     assert told["all_y"] == "(2.321 ± 0.015) mm, k = 1.96"
     assert told.keys() == {"all_y", "level[A]", "level[B]", "level[C]"}
+
+
+POOLED = '''\
+from sympy import sqrt
+from loopsheet import Method, count, groups, let, mean, measured
+
+
+class Pooled(Method, source="own", rows="readings", headline="s_w"):
+    """Scatter within specimens, of which one has a single reading."""
+
+    x = measured("mm", "reading")
+    specimen = groups("specimen")
+    m = let(mean(x, of=specimen), "mean of a specimen", "mm")
+    many = let(count(x, of=specimen), "readings of a specimen")
+    s = let(sqrt(sum((x - m) ** 2, of=specimen) / (many - 1)), "scatter of a specimen", "mm")
+    s_w = let(sqrt(sum((many - 1) * s**2) / (DOF)), "pooled scatter", "mm")
+'''
+READINGS = "reading,specimen,x [mm]\n1,A1,9.000\n2,B7,2.010\n3,B7,2.026\n4,C3,2.050\n5,C3,2.062\n"
+
+
+@pytest.mark.parametrize(
+    ("dof", "mixed"),
+    [("count(x) - count(m)", True), ("sum(many - 1)", False)],
+)
+def test_a_sum_over_groups_beside_a_count_of_the_rows_of_others_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], dof: str, mixed: bool
+) -> None:
+    """s_w was 0.0082 mm for 0.0100, by 5 readings less 2 specimens, and green as s[A1] was expected."""
+    (tmp_path / "workbook.py").write_text(POOLED.replace("DOF", dof), encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text(READINGS, encoding="utf-8")
+    toml = (
+        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n[expected]\n"s[A1]" = "one"\n'
+    )
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == mixed
+    said = "finding: s_w is over 2 of 3 specimens and counts rows of the others"
+    assert (said in capsys.readouterr().out) == mixed
+    values = Study(tmp_path).computed.values
+    assert (values.scalar("s_w") == pytest.approx(1e-5, rel=1e-12)) != mixed
+    (tmp_path / "report.toml").write_text(toml + 's_w = "as it was done before"\n', encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 0

@@ -16,7 +16,7 @@ import numpy as np
 from ..axis import GroupAxis
 from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
-from ..cells.values import Cell, Status
+from ..cells.values import Cell, Status, counts_left_out
 from ..messages.diagnostics import Check, Location
 from ..messages.errors import listing
 from ..quantity import behind
@@ -121,10 +121,6 @@ def _foreign(word: str, other: str) -> str:
         (letter for letter in word if letter not in other and letter.isalpha() and not letter.isascii()), ""
     )
     return f", with {unicodedata.name(odd, f'U+{ord(odd):04X}')}" if odd else ""
-
-
-def _of_misfit(known: Misfit) -> str:
-    return f"chi2 = {rounded(known.chi2, 3).plain} on {known.dof} degrees of freedom"
 
 
 def oddities(report: Report) -> tuple[Check, ...]:
@@ -250,8 +246,10 @@ class _Oddities:
             for row, cell in enumerate(self.values.cells(name)):
                 for rows, size, axis in self.values.left_out(name, row) if cell.value is not None else ():
                     over = f"over {rows} of {size} {self.sheet.rows_of(axis)}"
-                    which = foreseen if self.follows(cell, f"is {over}") else found
-                    which.setdefault(over, []).extend(self.told_of(cell))
+                    mixed = counts_left_out(self.values, name)
+                    expected = (self.reason if mixed else self.follows)(cell, f"is {over}")
+                    over += " and counts rows of the others" * mixed
+                    (foreseen if expected else found).setdefault(over, []).extend(self.told_of(cell))
         told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
         if found:
@@ -277,7 +275,7 @@ class _Oddities:
         if missing:
             causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
             has = "has" if len(missing) == 1 else "have"
-            said = f"{_addresses(missing)} of the result {has} no value"
+            said = f"{_some([cell.address for cell in missing])} of the result {has} no value"
             said += f", for want of {_some(list(causes))}" * any(cell.culprit for cell in missing)
         return Check(DATA, RESULT, not missing, said, self.inputs.place)
 
@@ -374,10 +372,8 @@ class _Oddities:
         if known is None:
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
-        found = f"{name} = {self.report.text(cell)}"
-        if together:
-            found += f", {rounded(known[0], 2).plain} with what errors have in common,"
-        found += f" on {known[1]} degrees of freedom"
+        found = f", {rounded(known[0], 2).plain} with what errors have in common," * together
+        found = f"{name} = {self.report.text(cell)}{found} on {known[1]} degrees of freedom"
         large, small = tail(*known), head(*known)
         # What is left without some rows is a sum by the weights of the fit.
         instead = self.without(squares) if large < RARE and squares.deviation and not together else ""
@@ -413,7 +409,7 @@ class _Oddities:
             if left:
                 said = f"{curve.observed} has no uncertainty to compare the residuals with, or too many rows"
             return Check(SQUARES, curve.name, True, f"{curve.name}: {said}", self.inputs.place, skipped=left)
-        found = f"{curve.residual}: {_of_misfit(known)}"
+        found = f"{curve.residual}: {known.said}"
         if math.isfinite(known.known_by):
             found += f" by a u with {known.known_by:.0f}"
         large, small = (how(known.chi2, known.dof, known.known_by) for how in (tail, head))
@@ -440,7 +436,7 @@ class _Oddities:
         if known is None or not known.is_stated:
             said = f"{found}, of which no uncertainty is stated that could say how far they differ"
             return Check(SQUARES, name, True, said, self.inputs.place)
-        found += f": {_of_misfit(known)}"
+        found += f": {known.said}"
         large, cell = tail(known.chi2, known.dof, known.known_by), self.values.cell(name)
         if large >= RARE:
             return Check(SQUARES, name, True, f"{found}, which is what chance makes", self.inputs.place)
@@ -638,10 +634,6 @@ class _Odd:
 
 def _no_value(cell: Cell) -> str:
     return f"has no value ({cell.status.code})"
-
-
-def _addresses(cells: Iterable[Cell]) -> str:
-    return _some([cell.address for cell in cells])
 
 
 def _some(parts: Sequence[str]) -> str:

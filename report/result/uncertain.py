@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from ..distribution import Shape
+from .numbers import rounded
 
 if TYPE_CHECKING:
     import numpy as np
@@ -361,6 +362,11 @@ class Misfit:
     def birge(self) -> float:
         """How many times too small the standard uncertainties are, if the model is right (Birge's ratio)."""
         return math.sqrt(self.chi2 / self.dof)
+
+    @property
+    def said(self) -> str:
+        """What they come to, in words."""
+        return f"chi2 = {rounded(self.chi2, 3).plain} on {self.dof} degrees of freedom"
 
 
 @dataclass(frozen=True)
