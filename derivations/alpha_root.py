@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr, Integer, Max, Ne, Piecewise, Poly, Pow, Rational, exp, log, numer, sqrt, together
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, Step, define
+from .equation import Derivation, Equation, Kind, Step, assume, define
 from .rebuilt import evaluated
 from .symbols import VOCABULARY
 
@@ -21,7 +21,7 @@ V, E, XP = (VOCABULARY[name] for name in ("v", "e", "x_p"))
 alpha, beta, u, u_turn, Lambda = VOCABULARY.plain("alpha beta u u_turn Lambda")
 
 with evaluate(False):
-    reciprocal = Equation("", (u, 1 / (alpha + 1)), "definition", Kind.DEFINITION, "reciprocal of alpha + 1")
+    reciprocal = assume((u, 1 / (alpha + 1)), "definition", "reciprocal of alpha + 1", Kind.DEFINITION)
 
     root_form = Equation(
         "(L5)",

@@ -146,6 +146,13 @@ def define(
     return Equation(number, (quantity, value), because, Kind.DEFINITION, title, defines=quantity, **more)
 
 
+def assume(
+    members: tuple[Expr, ...], because: str, title: str, kind: Kind = Kind.ASSUMPTION, **more: Any
+) -> Equation:
+    """Say what a derivation begins with and no source numbers: by `kind`, no claim."""
+    return Equation("", members, because, kind, title, **more)
+
+
 @dataclass(frozen=True)
 class Step:
     """One step: the claim follows when the premises are solved for `eliminate` and put in."""

@@ -15,7 +15,7 @@ from sympy import Expr, Rational, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
-from .equation import Derivation, Equation, Kind, define
+from .equation import Derivation, Equation, Kind, assume, define
 from .symbols import VOCABULARY, k
 
 XM, XP, W, D, R, LAM, H, Z, A_K, G, T, GAMMA = (
@@ -113,12 +113,11 @@ with evaluate(False):
 
 def _left(exponent: Expr, force: Expr, pull: Expr, name: str) -> Equation:
     """A normal equation of the tests that are left, for what the exponent and the force move then."""
-    return Equation(
-        "",
+    return assume(
         (exponent * (A_K[k] - ALPHA) - force * phi, pull),
         "with all tests it holds where nothing moves; without one, what that one pulled is missing",
-        Kind.DEFINITION,
         f"normal equation of the {name} without the test",
+        Kind.DEFINITION,
     )
 
 
@@ -127,13 +126,12 @@ _of_exponent = _left(S_DD - W[k] * D[k] ** 2, _products, -LAM[k] * D[k], "expone
 _of_force = _left(_products, S_XX - W[k] * XP[k] ** 2, -LAM[k] * XP[k], "force")
 
 _work = F_0 * x_0 * (XM[k] / x_0) ** _A / _A
-_compression = Equation(
-    "",
+_compression = assume(
     (F_0 * (XM[k] / x_0) ** ALPHA * G[k], -diff(_work, ALPHA, 2) / 2),
     "to first order a trend multiplies the force by 1 + trend ln(x/x_0)^2/2; under the integral of the work "
     "that is half the second derivative by the exponent",
-    Kind.DEFINITION,
     "work of compression, differentiated by the trend",
+    Kind.DEFINITION,
 )
 _peak = define(
     "",
@@ -142,12 +140,11 @@ _peak = define(
     "maximum force, differentiated by the trend",
     "of the logarithm of the force at the maximum approach, which moves itself",
 )
-_restitution = Equation(
-    "",
+_restitution = assume(
     (GAMMA[k] * (XM[k] - XP[k]) + G[k], T[k]),
     "by (7) the maximum force times the elastic recovery stays what it is",
-    Kind.DEFINITION,
     "work of restitution, differentiated by the trend",
+    Kind.DEFINITION,
 )
 
 

@@ -15,7 +15,7 @@ from sympy import Expr, diff, log, sqrt
 from sympy.core.parameters import evaluate
 
 from . import global_fit as fit
-from .equation import Derivation, Equation, Kind, define
+from .equation import Derivation, Equation, Kind, assume, define
 from .fit_checks import LEDGER as CHECKS
 from .soft_impact import law_c, x
 from .symbols import VOCABULARY, F_of, k
@@ -78,25 +78,23 @@ _covariances = (
     _covariance(c_aF, _A * S_DX / Delta, "covariance of exponent and force"),
     _covariance(c_FF, _A**2 * S_DD / Delta, "variance of the force, relative"),
 )
-_propagated = Equation(
-    "",
+_propagated = assume(
     (UC[k] / CP[k], sqrt(_by_alpha**2 * c_aa + 2 * _by_alpha * _by_F_0 * c_aF + _by_F_0**2 * c_FF)),
     "law of propagation of uncertainty, with correlation (JCGM 100, 5.2.2), relative to (L65)",
-    Kind.DEFINITION,
     "uncertainty of the force by propagation",
+    Kind.DEFINITION,
 )
-_as_deep = Equation(
-    "",
+_as_deep = assume(
     (diff(fit.on_curve, F_0) * F_0 * DC[k] / CP[k], R[k]),
     "definition: the force that changes the imprint depth by the misfit, to first order",
-    Kind.DEFINITION,
     "depth of a curve with more force",
+    Kind.DEFINITION,
 )
 
 
 def _entries() -> tuple[Equation | Derivation, ...]:
     """All of it, in the order of a ledger."""
-    at_peak = Equation("", (CP[k], F_of(XM[k])), "definition", Kind.DEFINITION, "force at the approach")
+    at_peak = assume((CP[k], F_of(XM[k])), "definition", "force at the approach", Kind.DEFINITION)
     return (
         Derivation.of(
             peak,

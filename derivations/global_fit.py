@@ -16,7 +16,7 @@ from dataclasses import replace
 from sympy import Abs, Expr, Function, Integer, Max, Piecewise, Rational, Sum, Symbol, diff, exp, log, sqrt
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, define
+from .equation import Derivation, Equation, Kind, assume, define
 from .soft_impact import LEDGER as PAPER
 from .soft_impact import ratio_step, v, x_m, x_m_of_test
 from .symbols import VOCABULARY, k
@@ -276,19 +276,16 @@ _squares = (
 def _least(true: Expr, slope: Expr, name: str) -> Equation:
     because = f"the squares of a test are least where their derivative by the true {name} vanishes"
     derivative = diff(_squares, true).xreplace({diff(_depth_of, true): slope}).xreplace({_depth_of: XP[k]})
-    return Equation(
-        "", (derivative, Integer(0)), because, Kind.DEFINITION, f"normal equation of the true {name}"
-    )
+    return assume((derivative, Integer(0)), because, f"normal equation of the true {name}", Kind.DEFINITION)
 
 
 _least_speed = _least(V[k], BV[k], "speed")
 _least_restitution = _least(E[k], BE[k], "restitution")
-_multiplied = Equation(
-    "",
+_multiplied = assume(
     (XO[k], XP[k] + UX[k] ** 2 * LAM[k]),
     "definition: Lagrange's multiplier of the condition that the depth lies on the curve",
-    Kind.DEFINITION,
     "multiplier by the depth",
+    Kind.DEFINITION,
 )
 _curve, _cells = (depth, approach), (XP[k], XM[k])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sympy import Expr, Integer
 
-from .equation import Equation, Kind
+from .equation import Equation, Kind, assume
 
 
 def normal_equation(derivative: Expr, name: str, given: str = "") -> Equation:
@@ -20,4 +20,4 @@ def normal_equation(derivative: Expr, name: str, given: str = "") -> Equation:
         What else holds, as the end of the sentence.
     """
     because = f"the sum of squares is least where its derivative by the {name} vanishes{given}"
-    return Equation("", (derivative, Integer(0)), because, Kind.DEFINITION, f"normal equation of the {name}")
+    return assume((derivative, Integer(0)), because, f"normal equation of the {name}", Kind.DEFINITION)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from sympy import Integer, Sum, Symbol, diff, exp, log
 from sympy.core.parameters import evaluate
 
-from .equation import Derivation, Equation, Kind, define
+from .equation import Derivation, Equation, Kind, assume, define
 from .normal_equation import normal_equation
 from .symbols import VOCABULARY, q
 
@@ -68,12 +68,11 @@ with evaluate(False):
         title="log-log fit: intercept",
     )
 
-    _line = Equation(
-        "",
+    _line = assume(
         (log(C_b * x[q] ** b / F_ref), a + b * log(x[q] / x_ref)),
         "the fitted line, read as a force law",
-        Kind.DEFINITION,
         "the line as a force law",
+        Kind.DEFINITION,
     )
 
     log_scale = Equation(

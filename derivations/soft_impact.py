@@ -12,7 +12,7 @@ from sympy.core.parameters import evaluate
 
 from . import alpha_root, errata, generated_points, pair_curve, power_law_fit
 from .alpha_root import reciprocal, root_form, u
-from .equation import Derivation, Equation, Kind, Ledger, Step, define
+from .equation import Derivation, Equation, Kind, Ledger, Step, assume, define
 from .symbols import VOCABULARY, F_LN_of, F_of, k
 
 V, E, XP, XM, CP = (VOCABULARY[name] for name in ("v", "e", "x_p", "x_m", "Cprime"))
@@ -81,11 +81,9 @@ with evaluate(False):
 
     # --- work and energy of one test, then of test k ---------------------------------------------
 
-    energy_c = Equation(
-        "",
+    energy_c = assume(
         (-(half * m_red * v**2), -Integral(F, (x, 0, x_m))),
         "the kinetic energy at impact is the work done up to the maximum approach",
-        Kind.ASSUMPTION,
         "theorem of kinetic energy, compression",
     )
 
@@ -96,11 +94,9 @@ with evaluate(False):
         title="work of compression",
     )
 
-    energy_r = Equation(
-        "",
+    energy_r = assume(
         (half * m_red * (e * v) ** 2, -Integral(F, (x, x_m, x_p))),
         "the kinetic energy at rebound is the work given back down to the imprint depth",
-        Kind.ASSUMPTION,
         "theorem of kinetic energy, restitution",
     )
 
@@ -218,24 +214,22 @@ with evaluate(False):
 
     # --- this project's own: the mass, and each test after the fit -----------------------------------
 
-    volume = Equation(
-        "",
+    volume = assume(
         (m_1, rho * Integral(pi * ((d / 2) ** 2 - z**2), (z, -d / 2, d / 2))),
         "the mass of a homogeneous ball, slice by slice",
-        Kind.DEFINITION,
         "mass of a homogeneous ball",
+        Kind.DEFINITION,
     )
 
     ball_mass = Equation("(L1)", (m_1, rho * pi * d**3 / 6), "volume of a ball", title="mass of the ball")
 
     mass_ratio = define("", mu, m_1 / m_2, "mass ratio")
 
-    immobile = Equation(
-        "",
+    immobile = assume(
         (mu, Integer(0)),
         "the target does not move: its mass is beyond all bounds",
-        Kind.LIMIT,
         "immobile target",
+        Kind.LIMIT,
     )
 
     reduced_by_ratio = Equation(

@@ -13,7 +13,7 @@ from sympy.core.parameters import evaluate
 
 from .. import power_law_fit as line
 from .. import soft_impact as paper
-from ..equation import Derivation, Equation, Kind, define
+from ..equation import Derivation, Equation, Kind, assume, define
 from ..global_fit import n_tests, over_tests
 from ..symbols import VOCABULARY as PAPER
 from ..symbols import k, q
@@ -68,11 +68,9 @@ _by_depth = Symbol("A_e", positive=True) * paper.x_m_of_test.value ** ((paper.al
 _steepness = simplify(v * log(_by_depth).diff(v)).xreplace({paper.alpha: alpha_e})
 
 with evaluate(False):
-    steepness = Equation(
-        "",
+    steepness = assume(
         (b, _steepness),
         "e^2 is as the recovery over the approach, and the radius as the root of the approach",
-        Kind.ASSUMPTION,
         "restitution by the speed under elastic unloading",
     )
     by_restitution = Equation(

@@ -23,7 +23,7 @@ from __future__ import annotations
 from sympy import Integral, Rational, Symbol, log
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Ledger, define
+from ..equation import Derivation, Equation, Kind, Ledger, assume, define
 from ..vocabulary import Quantity, Vocabulary
 from . import damping
 from .quantities import SHARED
@@ -137,11 +137,9 @@ with evaluate(False):
         "(L205) and (L207)",
         title="maximum approach with internal friction",
     )
-    meets = Equation(
-        "",
+    meets = assume(
         (Cprime, C * x_m**alpha),
         "both branches meet at rest, where there is no damping",
-        Kind.ASSUMPTION,
         "force at the maximum approach",
     )
     imprint = Equation(

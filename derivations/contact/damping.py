@@ -22,7 +22,7 @@ from __future__ import annotations
 from sympy import Expr, Integer, Integral, Rational, Symbol, exp, log, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Ledger, Step, define
+from ..equation import Derivation, Equation, Kind, Ledger, Step, assume, define
 from ..vocabulary import Quantity, Vocabulary
 from .quantities import SHARED
 
@@ -89,11 +89,9 @@ with evaluate(False):
     )
 
     # m x'' = -F as m x' dx' = -F dx, divided by 1 + c x'/v_0; then w = |x'|/v_0 runs from 0 to 1, and to e_o.
-    compression = Equation(
-        "",
+    compression = assume(
         (Integral(K * x**n, (x, 0, x_m)), m_red * v_0**2 * Integral(w / (1 + c * w), (w, 0, 1))),
         "Newton's law in compression, variables separated",
-        Kind.ASSUMPTION,
         "compression with damping",
     )
     left = define(
@@ -103,11 +101,9 @@ with evaluate(False):
         "factor of the damping at separation",
         "(L101) at the speed of rebound; the force does not pull, so it is positive",
     )
-    rebound = Equation(
-        "",
+    rebound = assume(
         (Integral(K * x**n, (x, 0, x_m)), m_red * v_0**2 * Integral((1 - w) / w, (w, g, 1)) / c**2),
         "Newton's law in restitution, variables separated, w the factor 1 + c x'/v_0",
-        Kind.ASSUMPTION,
         "restitution with damping",
     )
     work = define("", W, Integral(K * x**n, (x, 0, x_m)), "work of the elastic part")
@@ -161,13 +157,11 @@ with evaluate(False):
     asked = _by_factor("(L169)", c, e_o, "damping number")
 
     # The logarithm s of the factor 1 + c x'/v_0 falls from log(1 + c) at impact to -q at separation.
-    factor = Equation(
-        "", (exp(s_d), 1 + c * rate / v_0), "definition", Kind.DEFINITION, "logarithm of the factor"
+    factor = assume((exp(s_d), 1 + c * rate / v_0), "definition", "logarithm of the factor", Kind.DEFINITION)
+    turned = assume(
+        (xddot, v_0 * exp(s_d) * sdot / c), "the rate of that", "rate by the logarithm", Kind.DEFINITION
     )
-    turned = Equation(
-        "", (xddot, v_0 * exp(s_d) * sdot / c), "the rate of that", Kind.DEFINITION, "rate by the logarithm"
-    )
-    newton = Equation("", (m_red * xddot, -F), "Newton's law", Kind.ASSUMPTION, "Newton's law")
+    newton = assume((m_red * xddot, -F), "Newton's law", "Newton's law")
     falls = Equation(
         "(L172)",
         (sdot, -c * K * x**n / (m_red * v_0)),
@@ -175,14 +169,12 @@ with evaluate(False):
         title="rate of the logarithm of the damping's factor",
     )
     _fallen = 1 + c - log(1 + c) - exp(s_d) + s_d
-    work_fallen = Equation(
-        "",
+    work_fallen = assume(
         (
             Integral(K * x**n, (x, 0, x_s)),
             m_red * v_0**2 * Integral(exp(sigma) - 1, (sigma, s_d, log(1 + c))) / c**2,
         ),
         "Newton's law up to that approach, variables separated, by the logarithm of the factor",
-        Kind.ASSUMPTION,
         "work by the logarithm of the factor",
     )
     deep = Equation(
@@ -192,11 +184,9 @@ with evaluate(False):
         title="approach by the logarithm of the damping's factor",
     )
     _scale = (n + 1) * m_red * v_0**2 / (K * c**2)
-    passing = Equation(
-        "",
+    passing = assume(
         (t, Integral(m_red * v_0 / (c * K) * (_scale * _fallen) ** (-n / (n + 1)), (s_d, -q, log(1 + c)))),
         "the way of the logarithm over its rate (L172), with the approach (L173)",
-        Kind.ASSUMPTION,
         "way of the logarithm",
     )
     lasting = Equation(
@@ -214,18 +204,14 @@ with evaluate(False):
     )
 
     # The greatest force comes before the maximum approach: there dF/dt = 0.
-    work_peak = Equation(
-        "",
+    work_peak = assume(
         (Integral(K * x**n, (x, 0, x_F)), m_red * v_0**2 * Integral(w / (1 + c * w), (w, u_F, 1))),
         "Newton's law up to the greatest force, variables separated",
-        Kind.ASSUMPTION,
         "compression up to the greatest force",
     )
-    stationary = Equation(
-        "",
+    stationary = assume(
         (n * v_0 * u_F / x_F * (1 + c * u_F), c * K * x_F**n * (1 + c * u_F) / (m_red * v_0)),
         "the rate of (L101) over K x^n is zero, with x'' = -F/m",
-        Kind.ASSUMPTION,
         "greatest force",
     )
     peak_approach = Equation(
@@ -251,13 +237,7 @@ with evaluate(False):
         "dF/dt = 0",
         title="approach at the greatest force by the rate there",
     )
-    at_peak = Equation(
-        "",
-        (F_m, K * x_F**n * (1 + c * u_F)),
-        "(L101) there",
-        Kind.ASSUMPTION,
-        "force of the family at its greatest",
-    )
+    at_peak = assume((F_m, K * x_F**n * (1 + c * u_F)), "(L101) there", "force of the family at its greatest")
     greatest = Equation(
         "(L119)",
         (F_m, K * (n * m_red * v_0**2 * u_F / (c * K)) ** (n / (n + 1)) * (1 + c * u_F)),
@@ -270,7 +250,7 @@ with evaluate(False):
     def _loss(number: Symbol, elastic: Symbol, mean: Expr, back: Expr, because: str, title: str) -> Equation:
         """The energy that is lost is the work of the damping, (1 + back) times that of compression."""
         lost = half * m_red * v_0**2 * (1 - e**2)
-        return Equation("", (lost, (1 + back) * number * mean * elastic), because, Kind.ASSUMPTION, title)
+        return assume((lost, (1 + back) * number * mean * elastic), because, title)
 
     _all = half * m_red * v_0**2
     loss_undamped = _loss(
@@ -281,11 +261,9 @@ with evaluate(False):
         "path of the undamped impact in both branches, y = (x/x_m)^(n + 1)",
         "loss on the undamped path",
     )
-    all_elastic = Equation(
-        "",
+    all_elastic = assume(
         (_all, W_LN),
         "the elastic work is the kinetic energy: the damping is left out of it",
-        Kind.ASSUMPTION,
         "undamped compression",
     )
     loss_hu_guo = _loss(
@@ -296,21 +274,17 @@ with evaluate(False):
         "the undamped path, in restitution e times as fast",
         "loss by Hu and Guo",
     )
-    balance_hu_guo = Equation(
-        "",
+    balance_hu_guo = assume(
         (_all, W_HG * (1 + c_HG * Integral(sqrt(1 - y), (y, 0, 1)))),
         "the kinetic energy is the elastic work and that of the damping",
-        Kind.ASSUMPTION,
         "balance of compression by Hu and Guo",
     )
     loss_flores = _loss(
         c_F, W_F, (n + 1) * J, e, "path of a linear spring, in restitution e times as fast", "loss by Flores"
     )
-    balance_flores = Equation(
-        "",
+    balance_flores = assume(
         (_all, W_F * (1 + c_F * (n + 1) * J)),
         "the kinetic energy is the elastic work and that of the damping",
-        Kind.ASSUMPTION,
         "balance of compression by Flores",
     )
     mean_flores = define(

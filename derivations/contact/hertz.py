@@ -12,7 +12,7 @@ from collections.abc import Callable
 from sympy import Expr, Integer, Integral, Rational, Symbol, beta, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Step, define
+from ..equation import Derivation, Equation, Kind, Step, assume, define
 from ..vocabulary import Quantity, Vocabulary
 from .model import ContactModel
 from .quantities import SHARED
@@ -70,11 +70,9 @@ def timed(number: str, t: Symbol, title: str, taken: Callable[..., Expr], *of: E
 
     `taken` and `of`: what it is of what, :func:`duration` or :func:`elastic_duration`.
     """
-    way = Equation(
-        "",
+    way = assume(
         (t, taken(*of, over=passing)),
         "the way over its rate, which the energy that is left tells",
-        Kind.ASSUMPTION,
         f"shares of the way: {title}",
     )
     closed = Equation(
@@ -101,20 +99,17 @@ with evaluate(False):
         "both bodies give way",
     )
     diameters = define("", ratio, d / d_2, "ratio of the diameters")
-    flat = Equation("", (ratio, Integer(0)), "the target is a plane", Kind.LIMIT, "flat target")
-    gap_of_two = Equation(
-        "",
+    flat = assume((ratio, Integer(0)), "the target is a plane", "flat target", Kind.LIMIT)
+    gap_of_two = assume(
         (gap, off_axis**2 / d + off_axis**2 / d_2),
         "both bodies are balls, and the contact is small beside them",
-        Kind.ASSUMPTION,
         "gap of two balls that touch",
     )
-    gap_of_one = Equation(
-        "",
+    gap_of_one = assume(
         (gap, off_axis**2 / (2 * R)),
         "a ball on a plane with the same gap",
-        Kind.DEFINITION,
         "effective radius",
+        Kind.DEFINITION,
     )
     by_ratio = Equation(
         "", (R, d / (2 + 2 * ratio)), "(L189) with that ratio", title="effective radius by diameters"
@@ -135,22 +130,18 @@ with evaluate(False):
         "pressure at the centre",
     )
     contact = Equation("(L124)", (a**2, R * x), "the same theory", Kind.ASSUMPTION, "radius of the contact")
-    carried = Equation(
-        "",
+    carried = assume(
         (F, 2 * pi * a**2 * p_0 * Integral(r * sqrt(1 - r**2), (r, 0, 1))),
         "the pressure is an ellipse over the contact; r is the distance from the axis, over its radius",
-        Kind.ASSUMPTION,
         "force of Hertz's pressure",
     )
     stiffness = define("(L125)", K, Rational(4, 3) * E_star * sqrt(R), "stiffness of Hertz's contact")
     force = Equation(
         "(L126)", (F, K * x**hertz), "the pressure summed over the contact", title="Hertz's force"
     )
-    energy = Equation(
-        "",
+    energy = assume(
         (half * m_red * v**2, Integral(K * x**hertz, (x, 0, x_m))),
         "the kinetic energy at impact is the work of Hertz's force",
-        Kind.ASSUMPTION,
         "energy of an elastic impact",
     )
     approach = Equation(
@@ -178,18 +169,14 @@ with evaluate(False):
     )  # fmt: skip
 
     # --- unloading of an imprint: Hertz's contact of a flatter gap ----------------------------------------
-    unloading = Equation(
-        "",
+    unloading = assume(
         (F_m, Rational(4, 3) * E_star * sqrt(R_u) * delta**hertz),
         "unloading is elastic: Hertz's force with the radius of the gap that the imprint leaves",
-        Kind.ASSUMPTION,
         "force of elastic unloading",
     )
-    flatter = Equation(
-        "",
+    flatter = assume(
         (a_u**2, R_u * delta),
         "the radius of the contact where unloading begins",
-        Kind.ASSUMPTION,
         "radius of the contact at the beginning of unloading",
     )
     recovery = Equation(
@@ -199,11 +186,9 @@ with evaluate(False):
         title="elastic recovery",
         defines=delta,
     )
-    given_back = Equation(
-        "",
+    given_back = assume(
         (half * m_red * (e * v) ** 2, F_m * delta * Integral(r**hertz, (r, 0, 1))),
         "the kinetic energy at rebound is the work of elastic unloading, r its share of the recovery",
-        Kind.ASSUMPTION,
         "work of elastic unloading",
     )
     returned_work = Equation(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from sympy import Integer, Integral, Rational, atan, diff, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, define
+from ..equation import Derivation, Equation, Kind, assume, define
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz
 from .model import ContactModel
@@ -118,11 +118,9 @@ with evaluate(False):
         "the pressure on the crater",
         title="Johnson's fully plastic force",
     )
-    energy = Equation(
-        "",
+    energy = assume(
         (half * m_red * v**2, Integral(2 * pi * R * p_d * x, (x, 0, x_m))),
         "the kinetic energy at impact is the plastic work",
-        Kind.ASSUMPTION,
         "energy of a fully plastic impact",
     )
     approach = Equation(
@@ -219,7 +217,7 @@ JOHNSON = ContactModel(
         Derivation.of(
             imprint,
             (
-                Equation("", (x_p, x_m - delta), "definition", Kind.DEFINITION, "imprint by Johnson"),
+                assume((x_p, x_m - delta), "definition", "imprint by Johnson", Kind.DEFINITION),
                 _unloads, greatest, approach,
             ),
             (x_p, delta, peak, m_red),

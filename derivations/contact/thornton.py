@@ -11,7 +11,7 @@ from dataclasses import replace
 from sympy import Expr, Integer, Integral, Piecewise, Rational, Rel, acos, betainc, pi, sqrt
 from sympy.core.parameters import evaluate
 
-from ..equation import Derivation, Equation, Kind, Step, define
+from ..equation import Derivation, Equation, Kind, Step, assume, define
 from ..vocabulary import Quantity, Vocabulary
 from . import hertz, johnson
 from .model import ContactModel
@@ -74,15 +74,13 @@ with evaluate(False):
         Kind.ASSUMPTION,
         "Thornton's force beyond yield",
     )
-    energy = Equation(
-        "",
+    energy = assume(
         (
             half * m_red * v**2,
             Integral(K * x**hertz.hertz, (x, 0, x_y))
             + Integral(F_y + pi * R * p_y * (x - x_y), (x, x_y, x_m)),
         ),
         "the kinetic energy at impact is the work of both forces",
-        Kind.ASSUMPTION,
         "energy of an impact by Thornton",
     )
     approach = Equation(
@@ -150,8 +148,7 @@ with evaluate(False):
     # Up to the limit the rate falls as sqrt(1 - (V_y/v)^2 (x/x_y)^(5/2)); beyond it the contact is a spring
     # that would be at rest at x_y/3, and back it goes as a power.
     cut_at = define("", place, 2 * x_y / (3 * x_m - x_y), "beginning of the spring's way")
-    way = Equation(
-        "",
+    way = assume(
         (
             t,
             x_y / v * Integral(1 / sqrt(1 - (V_y / v) ** 2 * r ** (hertz.hertz + 1)), (r, 0, 1))
@@ -159,7 +156,6 @@ with evaluate(False):
             + (x_m - x_p) / (e_T * v) * hertz.passing(hertz.hertz),
         ),
         "the way of each branch over its rate, which the energy that is left tells",
-        Kind.ASSUMPTION,
         "shares of the way: duration by Thornton",
     )
     lasting = Equation(
@@ -229,7 +225,7 @@ THORNTON = ContactModel(
         Derivation.of(
             imprint,
             (
-                Equation("", (x_p, x_m - delta), "definition", Kind.DEFINITION, "imprint by Thornton"),
+                assume((x_p, x_m - delta), "definition", "imprint by Thornton", Kind.DEFINITION),
                 _recovers,
                 _reaches,
             ),
