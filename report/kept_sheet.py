@@ -1,4 +1,4 @@
-"""The sheet of a shipped workbook as data: made once, so that what runs of it needs no algebra.
+"""Sheet and equations of a shipped workbook as data: made once, so that what runs of them needs no algebra.
 
 What is kept says which columns there are and what each of them names. Their rules are not kept: they are
 declared again when somebody asks for one.
@@ -11,16 +11,15 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Any
 
-from ..derivations.equation import Equation, Ledger
-from ..derivations.vocabulary import Vocabulary
+from ..derivations.equation import Derivation, Equation, Kind, Ledger, Step
+from ..derivations.vocabulary import Quantity, Vocabulary
 from .axis import Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis
 from .cells.marks import margins
 from .charts import Drawn
 from .column import Column, Formula, Given, Iterated, Limit, Mentioned, Root, Rule
 from .document.names import latex_names
-from .document.parts import Placed
-from .document.written import placed
-from .kept_ledger import ToldEquation, ToldLedger, known_equation, known_ledger, told_equation, told_ledger
+from .document.parts import Placed, Written
+from .document.written import gone, placed, written
 from .machine.kept import kept
 from .partly import is_partly, partly
 from .plan.kept import as_data, of_data
@@ -30,6 +29,34 @@ from .which_workbook import is_shipped
 from .workbook import Workbook
 
 _KINDS = {kind.__name__: kind for kind in (Axis, CountedAxis, GroupAxis, MemberAxis, PairAxis, RepeatAxis)}
+_WORDS = ("number", "part", "title", "because")
+"""What an equation says, and what is told of it, alike."""
+
+
+@dataclass(frozen=True)
+class _ToldEquation:
+    """What an equation says; `origin` is what it is an instance of."""
+
+    words: dict[str, str]
+    kind: str
+    written: Written | None
+    origin: _ToldEquation | None
+
+
+@dataclass(frozen=True)
+class _ToldStep:
+    claim: _ToldEquation
+    premises: tuple[_ToldEquation, ...]
+    says: str
+    gone: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _ToldLedger:
+    """What a ledger says: each entry is an equation, or the steps that end in one."""
+
+    vocabulary: tuple[dict[str, Any], ...]
+    entries: tuple[_ToldEquation | tuple[_ToldStep, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -69,7 +96,7 @@ class _ToldColumn:
     limits: tuple[_ToldLimit, ...]
     alongside: tuple[str, ...]
     given: dict[str, Any] | None
-    equations: tuple[ToldEquation, ...]
+    equations: tuple[_ToldEquation, ...]
     placed: Placed | None
     root: tuple[str, str, str, bool] | None
     iterated: str | None
@@ -158,9 +185,9 @@ def ledger_of(
         return declared()
 
     def told() -> Any:
-        return as_data(told_ledger(declared(), latex_names(declared().vocabulary, sheet.columns)))
+        return as_data(_told_ledger(declared(), latex_names(declared().vocabulary, sheet.columns)))
 
-    return known_ledger(of_data(of_shipped(workbook, given, "ledger", told), ToldLedger), declared)
+    return _known_ledger(of_data(of_shipped(workbook, given, "ledger", told), _ToldLedger), declared)
 
 
 def of_shipped(workbook: Workbook, given: frozenset[str], what: str, make: Callable[[], Any]) -> Any:
@@ -218,11 +245,41 @@ def _column(
         limits=tuple(limits),
         alongside=tuple(other.name for other in column.alongside),
         given=asdict(rule) if isinstance(rule, Given) else None,
-        equations=tuple(told_equation(each, *writing) for each in equations) if writing else (),
+        equations=tuple(_told_equation(each, *writing) for each in equations) if writing else (),
         placed=place,
         root=(rule.none, rule.two, rule.unknown_name, rule.by_proof) if isinstance(rule, Root) else None,
         iterated=rule.none if isinstance(rule, Iterated) else None,
     )
+
+
+def _told_equation(equation: Equation, names: Mapping[str, str], vocabulary: Vocabulary) -> _ToldEquation:
+    """What there is to keep of an equation; parameters as for :func:`~.document.written.written`."""
+    parent = equation.parent
+    origin = None if parent is None else _ToldEquation(_words(parent), parent.kind.value, None, None)
+    own = written(equation, names, vocabulary)
+    return _ToldEquation(_words(equation), equation.kind.value, own, origin)
+
+
+def _told_ledger(ledger: Ledger, names: Mapping[str, str]) -> _ToldLedger:
+    """What there is to keep of a ledger."""
+
+    def equation(own: Equation) -> _ToldEquation:
+        return _told_equation(own, names, ledger.vocabulary)
+
+    def step(own: Step) -> _ToldStep:
+        return _ToldStep(equation(own.claim), tuple(map(equation, own.premises)), own.says, gone(own, names))
+
+    return _ToldLedger(
+        tuple(asdict(quantity) for quantity in ledger.vocabulary.values()),
+        tuple(
+            tuple(map(step, entry.steps)) if isinstance(entry, Derivation) else equation(entry)
+            for entry in ledger.entries
+        ),
+    )
+
+
+def _words(equation: Equation) -> dict[str, str]:
+    return {name: getattr(equation, name) for name in _WORDS}
 
 
 # --- the same again --------------------------------------------------------------------------------------
@@ -274,7 +331,7 @@ class _Known:
         if told.given is not None:
             return Given(told.given["source"], Bounds(**told.given["bounds"]), told.given["u_of"])
         equations = {
-            name: known_equation(own, lambda name=name: getattr(whole().rule, name))  # type: ignore[misc]
+            name: _known_equation(own, lambda name=name: getattr(whole().rule, name))  # type: ignore[misc]
             for name, own in zip(("equation", "form"), told.equations, strict=False)
         }
         said = told.root or (() if told.iterated is None else (told.iterated,))
@@ -288,3 +345,43 @@ class _Known:
         if told.inside is not None:
             known["inside"] = Bounds(**told.inside)
         return partly(Limit, {**known, "mentioned": told.mentioned}, lambda: whole().limits[place])
+
+
+def _known_equation(told: _ToldEquation, whole: Callable[[], Equation]) -> Equation:
+    """The equation of what was told.
+
+    `whole`: returns the equation that it was told of.
+    """
+    parent = None if told.origin is None else _known_equation(told.origin, lambda: whole().origin)
+    known = {**told.words, "kind": Kind(told.kind), "parent": parent, "written": told.written}
+    return partly(Equation, known, whole)
+
+
+def _known_ledger(told: _ToldLedger, declared: Callable[[], Ledger]) -> Ledger:
+    """The ledger of what was told; parameters as for :func:`_known_equation`."""
+    declared = cache(declared)
+    entries = tuple(_entry(own, declared, n) for n, own in enumerate(told.entries))
+    words = ({**own, "span": tuple(own["span"])} for own in told.vocabulary)
+    vocabulary = Vocabulary(*(Quantity(**own) for own in words))
+    return partly(Ledger, {"entries": entries, "vocabulary": vocabulary}, declared)
+
+
+def _entry(
+    told: _ToldEquation | tuple[_ToldStep, ...], declared: Callable[[], Ledger], place: int
+) -> Equation | Derivation:
+    def whole() -> Any:
+        return declared().entries[place]
+
+    if isinstance(told, _ToldEquation):
+        return _known_equation(told, whole)
+    steps = tuple(_step(own, lambda n=n: whole().steps[n]) for n, own in enumerate(told))  # type: ignore[misc]
+    return partly(Derivation, {"steps": steps}, whole)
+
+
+def _step(told: _ToldStep, whole: Callable[[], Step]) -> Step:
+    premises = tuple(
+        _known_equation(own, lambda n=n: whole().premises[n])  # type: ignore[misc]
+        for n, own in enumerate(told.premises)
+    )
+    claim = _known_equation(told.claim, lambda: whole().claim)
+    return partly(Step, {"claim": claim, "premises": premises, "says": told.says, "gone": told.gone}, whole)
