@@ -18,7 +18,6 @@ from ..charts import Drawn, drawn
 from ..named import name_of
 from ..sheet import Column, Formula, Given, Limit, RepeatAxis, Root, Sheet
 from . import soft_impact
-from .soft_impact_sheet import TESTS, beta, e, masses, of_sheet, v, x_p
 
 _BODIES = ("E_1", "nu_1", "E_2", "nu_2")
 """What is given of both bodies besides their masses."""
@@ -36,6 +35,9 @@ _CALLED = {
     "u_v": "u_v", "u_e": "u_e", "u_x": "u_x_p", "m_1": "ball_mass",
 }  # fmt: skip
 """What quantities of the derivations are called in the sheet, where their names differ."""
+_ALONE = frozenset({"ball_mass"})
+"""What is given, to the soft-impact sheet, for its columns that are the same whatever is."""
+_TESTS = soft_impact.sheet(_ALONE).axes[0]
 
 
 def sheet(given: frozenset[str]) -> Sheet:
@@ -45,11 +47,10 @@ def sheet(given: frozenset[str]) -> Sheet:
     whether first yield is told.
     """
     laid = _Laid()
-    own = frozenset({"ball_mass"})
-    names = [column.name for column in soft_impact.sheet(own).columns]
-    fitted = of_sheet(own, *names[names.index("u_v") :])
+    names = [column.name for column in soft_impact.sheet(_ALONE).columns]
+    fitted = _of_tests(_ALONE, *names[names.index("u_v") :])
     told = {equation.label for equation in LEDGER.equations()}
-    for column in (v, e, x_p, beta, *masses(given), *fitted):
+    for column in (*_of_tests(_ALONE, "v", "e", "x_p", "beta"), *_masses(given), *fitted):
         if column.equation is None or column.equation.label in told:
             laid.add(column)
     if "ball_diameter" not in laid.columns:
@@ -79,6 +80,19 @@ def sheet(given: frozenset[str]) -> Sheet:
         for each in author.told:
             laid.tell_prescribed(each)
     return Sheet(tuple(laid.columns.values()))
+
+
+def _of_tests(given: frozenset[str], *names: str) -> tuple[Column, ...]:
+    """Some columns of the soft-impact sheet; what is odd of them is said there."""
+    own = soft_impact.sheet(given)
+    return tuple(replace(own[name], limits=()) for name in names if name in own)
+
+
+def _masses(given: frozenset[str]) -> tuple[Column, ...]:
+    """The mass of the ball and the reduced mass, from what was given."""
+    shape = () if "ball_mass" in given else ("ball_diameter", "ball_density")
+    own = given & {"ball_mass", "target_mass", *shape}
+    return _of_tests(own, *shape, "ball_mass", "target_mass", "m_red")
 
 
 def _parts(model: ContactModel) -> tuple[list[Equation], list[Equation]]:
@@ -164,7 +178,7 @@ class _Laid:
         where = self.where | {old: self.where[name] for old, name in called.items() if name in self.where}
         named = set[Any]().union(*(side.xreplace(where).free_symbols for side in equation.sides))
         blank = Column(
-            new.name, TESTS if k in named else None, Given(), own.unit, own.meaning, own.latex,
+            new.name, _TESTS if k in named else None, Given(), own.unit, own.meaning, own.latex,
             positive=bool(own.positive),
             display="%" if new.name.startswith(_PERCENT) else _SHOWN.get(own.unit, ""), **more,
         )  # fmt: skip
@@ -223,7 +237,7 @@ def branches(sheet: Sheet, points: int) -> Drawn:
     `points`: of each branch.
     """
     row, step, size = (Symbol(name, integer=True, positive=True) for name in ("l", "m", "n_loops"))
-    axis = RepeatAxis("loops", row, size, of=TESTS, step=step, count="loop_points")
+    axis = RepeatAxis("loops", row, size, of=_TESTS, step=step, count="loop_points")
     count = Column(axis.count, None, Given("chart"), meaning="points of each branch", exact=True)
     share, found, where = (step - 1) / (count.symbol - 1), [count], _Laid.of(sheet).where
     for model in MODELS:
