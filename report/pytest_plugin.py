@@ -95,13 +95,9 @@ def _own_code_is_asked_for(config: pytest.Config) -> bool:
         return False
     chosen = config.getoption("markexpr", "")
     try:
-        return not chosen or Expression.compile(chosen).evaluate(_is_our_marker)
+        return not chosen or Expression.compile(chosen).evaluate(lambda name, /, **_: name == "loopsheet")
     except SyntaxError:
         return False  # pytest tells of it
-
-
-def _is_our_marker(name: str, /, **_: object) -> bool:
-    return name == "loopsheet"
 
 
 class FolderChecks:

@@ -85,10 +85,7 @@ def _known(
 
 def _number(report: Report, name: str, row: int, value: float) -> str:
     """LaTeX of a number in a place; what would be misread there stands in brackets."""
-    return _bracketed(_written(_figure(report, name, value)))
-
-
-def _bracketed(latex: str) -> str:
+    latex = _written(_figure(report, name, value))
     return rf"\left({latex}\right)" if re.search("^-|times", latex) else latex
 
 

@@ -13,6 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from statistics import median
+from types import ModuleType
 from typing import Any
 
 import mpmath
@@ -434,6 +435,8 @@ class _Scope:
     `kept` (mapping of axis name to list of int): the rows that sums over an axis run over.
     """
 
+    module: ModuleType = mpmath
+
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
         self.engine, self.column, self.kept = engine, column, kept
         self.axis = None if column.axis is None else column.axis.name
@@ -477,7 +480,7 @@ class _Scope:
 
     def _many(self, texts: Mapping[str, Any], axis: str | None) -> Callable[..., Sequence[Any]]:
         """Several expressions of a row of an axis at once, so that their common parts are computed once."""
-        function = self._function(texts["source"])
+        function = _function(texts["source"], self.module)
         readers = [self._reader(cell, axis) for cell in texts["cells"]]
         sums = self._totals(texts)
 
@@ -529,10 +532,6 @@ class _Scope:
         """What is read, row by row."""
         return numbers
 
-    def _function(self, source: str) -> Any:
-        """The function of a text."""
-        return _mpmath(source)
-
     def _size(self, axis: str) -> int:
         return self.engine.layouts[axis].size
 
@@ -559,6 +558,8 @@ class _Scope:
 class _Roughly(_Scope):
     """The same in doubles, all terms of a sum at once: where a root is about."""
 
+    module = np
+
     def __init__(self, scope: _Scope) -> None:
         super().__init__(scope.engine, scope.column, scope.kept)
 
@@ -572,9 +573,6 @@ class _Roughly(_Scope):
 
         return guess
 
-    def _function(self, source: str) -> Any:
-        return _numpy(source)
-
     def _numbers(self, numbers: list[Any]) -> Any:
         return np.array([np.nan if number is None else float(number) for number in numbers])
 
@@ -587,10 +585,6 @@ class _Roughly(_Scope):
 
 
 @lru_cache(maxsize=1024)
-def _mpmath(source: str) -> Any:
-    return function_of(source, vars(mpmath))
-
-
-@lru_cache(maxsize=128)
-def _numpy(source: str) -> Any:
-    return function_of(source, vars(np))
+def _function(source: str, module: ModuleType) -> Any:
+    """The function of a text, which calls those of a module."""
+    return function_of(source, vars(module))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import NamedTuple
@@ -92,14 +93,8 @@ def _filled(template: str, printed: Callable[[Expr], str], line: str, indent: st
     return text.rstrip("\n")
 
 
-def as_c(of: WrittenLaw) -> str:
-    """A function in C99."""
-    return _filled("force.c.txt", ccode, "const double {} = {};", "   ", of)
-
-
-def as_python(of: WrittenLaw) -> str:
-    """A function in Python, which imports nothing."""
-    return _filled("force.py.txt", pycode, "{} = {}", "", of)
+_C99 = partial(_filled, "force.c.txt", ccode, "const double {} = {};", "   ")
+_PYTHON = partial(_filled, "force.py.txt", pycode, "{} = {}", "")
 
 
 def as_table(of: WrittenLaw) -> str:
@@ -129,7 +124,7 @@ class Language(NamedTuple):
 
 SOURCES = {
     "table": Language("the identified law, force over approach at one speed, as CSV", as_table),
-    "c": Language("the identified law as a function in C, for any speed", as_c, "/* ", " */"),
-    "python": Language("the identified law as a function in Python, for any speed", as_python),
+    "c": Language("the identified law as a function in C, for any speed", _C99, "/* ", " */"),
+    "python": Language("the identified law as a function in Python, for any speed", _PYTHON),
 }
 """What prints the law itself, by the word for it."""

@@ -45,7 +45,8 @@ def computed_from_printed(search: Search) -> Iterator[Explained]:
     """Published values that were computed from printed, rounded ones: one habit, else two together."""
     habits = list(_habits(search))
     for number in (1, 2):
-        some = [those for those in combinations(habits, number) if _apart(those) and _worth(search, those)]
+        apart = filter(_apart, combinations(habits, number))
+        some = [those for those in apart if search.worth(_members(those))]
         asked = [(_computed(search.problem, those), None) for those in some]
         found = search.likeliest(asked)
         # From more columns they were computed only if that makes a difference.
@@ -63,10 +64,6 @@ def _apart(habits: Sequence[_Habit]) -> bool:
 
 def _members(habits: Sequence[_Habit]) -> frozenset[int]:
     return frozenset[int]().union(*(habit.members for habit in habits))
-
-
-def _worth(search: Search, habits: Sequence[_Habit]) -> bool:
-    return search.worth(_members(habits))
 
 
 def _computed(problem: Problem, habits: Sequence[_Habit]) -> Problem:

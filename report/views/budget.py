@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..cells.address import address
@@ -61,7 +61,7 @@ def sentence(report: Report, budget: uncertain.Budget) -> str:
 
 def _blocks(report: Report, budget: uncertain.Budget, besides: Besides = NOTHING) -> Iterator[Block]:
     """The sentence, what limits say, a table of the sources, and what draws told."""
-    said = [sentence(report, budget), *_of_limits(report, besides.limited)]
+    said = [sentence(report, budget), *(line for each in besides.limited for line in lines(report, each))]
     told = [*notes(report, budget), *_of_scatter(report, budget, besides.scattered)]
     told += _of_draws(report, budget, besides.drawn)
     if rows := [_row(report, budget, each) for each in budget.contributions]:
@@ -293,11 +293,6 @@ def _drawn(drawn: uncertain.Distributed) -> dict[str, object]:
         "differences": list(map(number, drawn.differences)),
         "validates": drawn.validates,
     }
-
-
-def _of_limits(report: Report, limited: Iterable[uncertain.Conformity]) -> Iterator[str]:
-    """What limits say of the cell, in lines."""
-    return (line for each in limited for line in lines(report, each))
 
 
 def _conformity(found: uncertain.Conformity) -> dict[str, object]:

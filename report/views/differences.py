@@ -24,7 +24,8 @@ def as_text(found: Differences, most: int) -> str:
     width = max([_WIDTH, *(len(move.named) for move in found.moved[:most])])
     for move in found.moved[:most]:
         was, now, by = moved(move)
-        lines.append(f"  {move.kind:6}   {move.named:{width}} {was} -> {now}{_unit(move)}   {by}".rstrip())
+        now += behind(move.unit)
+        lines.append(f"  {move.kind:6}   {move.named:{width}} {was} -> {now}   {by}".rstrip())
     lines += _rest([move.address for move in found.moved], most)
     for word, changes in _others(found):
         for change in changes[:most]:
@@ -76,10 +77,6 @@ def _said(text: str) -> str:
     return text or "(none)"
 
 
-def _unit(move: Move) -> str:
-    return behind(move.unit)
-
-
 def moved(move: Move) -> tuple[str, str, str]:
     """Both values, with as many digits as it takes to tell them apart, and by how much.
 
@@ -121,7 +118,8 @@ def as_markdown(found: Differences, most: int) -> str:
     rows = []
     for move in found.moved[:most]:
         was, now, by = moved(move)
-        rows.append([md.code(move.named), move.kind, md.cell(was), md.cell(now + _unit(move)), md.cell(by)])
+        now += behind(move.unit)
+        rows.append([md.code(move.named), move.kind, md.cell(was), md.cell(now), md.cell(by)])
     text += _section(["number", "", "before", "after", "by"], rows, [m.address for m in found.moved], most)
     for word, changes in _others(found):
         rows = [[md.code(c.name), md.code(_said(c.before)), md.code(_said(c.after))] for c in changes[:most]]

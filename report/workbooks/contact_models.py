@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from ...derivations.contact.model import ContactModel
-    from ...derivations.equation import Ledger
     from ..sheet import Sheet
 
 _POSITIVE = Bounds(low=0, low_open=True)
@@ -60,10 +59,6 @@ def _sheet(given: frozenset[str]) -> Sheet:
     from .contact_models_sheet import sheet
 
     return sheet(given)
-
-
-def _ledger() -> Ledger:
-    return LEDGER
 
 
 def _constants(sheet: Sheet) -> Mapping[Symbol, str]:
@@ -230,7 +225,7 @@ WORKBOOK = Workbook(
     name="contact_models",
     title="Contact models beside drop tests on a soft target",
     source="Hertz 1881, Lankarani and Nikravesh 1994, Johnson 1985, Thornton 1997, F C Ciornei and others",
-    ledger=_ledger,
+    ledger=lambda: LEDGER,
     measured=soft_impact.MEASURED,
     parameters=PARAMETERS,
     check_parameters=_bodies_given,
@@ -280,6 +275,3 @@ WORKBOOK = Workbook(
         "E_1": "210 GPa", "nu_1": "0.30", "E_2": "210 GPa", "nu_2": "0.30",
     },
 )  # fmt: skip
-
-sheet = WORKBOOK.sheet
-"""The sheet for the names of the parameters that were given; what is given has its bounds."""

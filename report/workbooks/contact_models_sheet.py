@@ -78,7 +78,7 @@ def sheet(given: frozenset[str]) -> Sheet:
         laid.tell(equation, checks.NEEDS)
     for author in prescribed.AUTHORS:
         for each in author.told:
-            laid.tell_prescribed(each)
+            laid.tell(each.equation, {each.own.symbol: each.needs}, solved=each.solved)
     return Sheet(tuple(laid.columns.values()))
 
 
@@ -203,10 +203,6 @@ class _Laid:
         self.where |= {new: column.cell}
         if new == symbol:
             self.where |= {own[k]: column.cell}
-
-    def tell_prescribed(self, told: prescribed.Told) -> None:
-        """A cell of the damping that a typed restitution gets."""
-        self.tell(told.equation, {told.own.symbol: told.needs}, solved=told.solved)
 
     def limits(self, expected: tuple[Rel, str] | None, where: Mapping[Expr, Expr]) -> list[Limit]:
         """Where a cell is expected, if all that this names is in the sheet."""
