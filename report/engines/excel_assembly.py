@@ -25,7 +25,7 @@ from ..sheet import Axis, Column, Given, GroupAxis, Sheet
 from .certified import certified
 from .excel import ordered
 from .excel_formulas import Formulas, Places, carried, carried_name, guard, works_on_ranges
-from .excel_loops import Pass, names_in, passes_of
+from .excel_loops import names_in, passes_of
 from .excel_roots import Unrolled, unroll
 from .excel_slopes import Slopes
 from .excel_values import NotPrintable
@@ -51,39 +51,37 @@ class _Room:
         return place
 
 
+@dataclass
 class Assembly:
     """Blocks being put together: first all places, then all formulas."""
 
-    def __init__(
-        self,
-        worksheets: Mapping[str, str],
-        sheet: Sheet,
-        judged: Sheet,
-        whole: Sheet,
-        layouts: Mapping[str, Layout],
-        counts: Mapping[str, float],
-        units: Mapping[str, str],
-        first: Sequence[str],
-        results: Sequence[str],
-        worded: Mapping[str, Sequence[str]],
-        thinned: Collection[str],
-        times: int,
-        last: int,
-    ) -> None:
-        self.sheet, self.judged, self.whole, self.layouts, self.counts = sheet, judged, whole, layouts, counts
-        self.units, self.first, self.results = units, first, results
-        self.names = worksheets
-        self.rooms = {axis.name: _Room(self.names[axis.name], layouts[axis.name].size) for axis in whole.axes}
+    names: Mapping[str, str]
+    """Of worksheets, by index set."""
+    sheet: Sheet
+    judged: Sheet
+    whole: Sheet
+    layouts: Mapping[str, Layout]
+    counts: Mapping[str, float]
+    units: Mapping[str, str]
+    first: Sequence[str]
+    results: Sequence[str]
+    worded: Mapping[str, Sequence[str]]
+    thinned: Collection[str]
+    times: int
+    last: int
+
+    def __post_init__(self) -> None:
+        whole, sheet = self.whole, self.sheet
+        self.rooms = {a.name: _Room(self.names[a.name], self.layouts[a.name].size) for a in whole.axes}
         self.places: dict[str, grid.Place] = {}
         self.notes: dict[str, grid.Place] = {}
-        self.thinned = thinned
-        self.worded, self.words = worded, dict[str, tuple[grid.Place, ...]]()
+        self.words: dict[str, tuple[grid.Place, ...]] = {}
         self.groups: dict[str, tuple[grid.Grouped, ...]] = {}
         self.indices: dict[str, tuple[grid.Place, ...]] = {}
         self.plan = ordered(lowered(whole))
         roots = {node.column.name: node for node in self.plan.nodes if isinstance(node, RootNode)}
         self.unrolled = {
-            c.name: unroll(self.plan, roots[c.name], certified(sheet, c), times)
+            c.name: unroll(self.plan, roots[c.name], certified(sheet, c), self.times)
             for c in sheet.columns
             if c.name in roots
         }
@@ -95,7 +93,7 @@ class Assembly:
             if isinstance(given.rule, Given)
         }
         self.asked = [column for column in sheet.columns if column.name in asked]
-        self.passes, self.last = passes_of(sheet, last), last
+        self.passes = passes_of(sheet, self.last)
         self.carried = {k: v for c in whole.columns for k, v in self.carried_for(c).items()}
 
     def told(self) -> dict[str, Any]:
@@ -158,7 +156,7 @@ class Assembly:
             if column.axis is not None and column not in given and column.name not in self.passes:
                 self.put(column, column.name)
         for number in range(self.last + 1):
-            own = self.in_pass(number)
+            own = {each.rule: each for each in self.passes.values() if each.number == number}
             for column in self.whole.columns:
                 if column.axis is not None and column.name in own:
                     self.put(column, own[column.name].name)
@@ -212,10 +210,6 @@ class Assembly:
             for leaf, axis in found.values()
         )
         return {carried_name(leaf): (leaf, axis) for leaf, axis in every}
-
-    def in_pass(self, number: int) -> dict[str, Pass]:
-        """The columns of a pass, by those that have their rules."""
-        return {each.rule: each for each in self.passes.values() if each.number == number}
 
     def put(self, column: Column, name: str) -> None:
         """The next free column of its worksheet."""
