@@ -15,6 +15,7 @@ from .result.card import Card, Cards, NoCard, Point, Prescribed
 if TYPE_CHECKING:
     from sympy import Symbol
 
+    from .impacts.card import Bodies
     from .impacts.code import ContactFormula
     from .impacts.drops import Drop, Drops
     from .impacts.law import ForceLaw
@@ -58,13 +59,11 @@ class Asked:
         """Which of Poisson's ratio and radius a code has to know."""
         return code.asks(self.E is not None)
 
-    def bodies(self, drops: Drops) -> tuple[float | None, float, float]:
-        """Modulus, Poisson's ratio and radius that are taken."""
-        return (
-            self.E,
-            self.poisson(drops)[0],
-            drops.radius if self.R is None else self.R,
-        )
+    def bodies(self, drops: Drops) -> Bodies:
+        """What is taken of the bodies."""
+        from .impacts.card import Bodies
+
+        return Bodies(self.E, self.poisson(drops)[0], drops.radius if self.R is None else self.R)
 
     def poisson(self, drops: Drops) -> tuple[float, str]:
         """Poisson's ratio that is taken, and what is to be said of it."""
@@ -176,7 +175,7 @@ def card(code: ContactFormula, drops: Drops, drop: Drop, of: str, asked: Asked) 
     """
     from .impacts.card import card as made
 
-    found = made(code, drops, drop, of, *asked.bodies(drops))
+    found = made(code, drops, drop, of, asked.bodies(drops))
     return replace(found, notes=(*found.notes, *_assumed(code, asked, drops)))
 
 
@@ -229,7 +228,7 @@ def _solved(
 
     if code is None:
         return drops.law(), {}
-    return code.law, solved(code, drops, drop, *asked.bodies(drops))[0]
+    return code.law, solved(code, drops, drop, asked.bodies(drops))[0]
 
 
 def _assumed(code: ContactFormula, asked: Asked, drops: Drops) -> Iterator[str]:

@@ -18,7 +18,7 @@ from sympy import Float, Symbol
 from loopsheet.derivations.contact.power_law import POWER_LAW
 from loopsheet.report.cells.values import Status
 from loopsheet.report.cli import main
-from loopsheet.report.impacts.card import Unreachable, card
+from loopsheet.report.impacts.card import Bodies, Unreachable, card
 from loopsheet.report.impacts.code import ContactFormula, SimulationCode, Typed
 from loopsheet.report.impacts.codes import CODES
 from loopsheet.report.impacts.contact import law_of
@@ -40,13 +40,12 @@ STEEL = Drops(
     beta=1.5,
     radius=6.35e-3,
 )
-NONE = None, math.nan, math.nan
 BUFFER = Drops(12.0, (0.4, 0.1), (0.82, 0.9), (math.nan, math.nan), 1.1, 3e4, 1.5, 0.2)
 """Something heavy and soft, in another order, without imprints."""
 
 
 def of(code: SimulationCode, drops: Drops = STEEL, modulus: float | None = None) -> Card:
-    return card(code, drops, drops.middle, "x", modulus, 0.3, drops.radius)
+    return card(code, drops, drops.middle, "x", Bodies(modulus, 0.3, drops.radius))
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +139,7 @@ def test_a_radius_with_which_no_stiffness_stops_the_bodies(radius: float) -> Non
     with pytest.raises(
         Unreachable, match=rf"no stiffness from .* after 5\.5.*e-05 m with R = {re.escape(f'{radius:g}')} m"
     ):
-        card(CODES["lammps"], STEEL, STEEL.middle, "x", None, 0.3, radius)
+        card(CODES["lammps"], STEEL, STEEL.middle, "x", Bodies(None, 0.3, radius))
 
 
 def test_a_formula_that_loses_nothing_is_unreachable() -> None:
@@ -326,7 +325,9 @@ def test_impacts_that_do_not_part_are_codes_in_a_card() -> None:
     drop = STEEL.tests[0]
     given = {spring: 1e7, dashpot: 1.5 * math.sqrt(1e7 * STEEL.mass) / STEEL.tests[2].speed ** 4}
     typed = tuple(Typed(str(symbol), symbol, "SI", "", Float(value)) for symbol, value in given.items())
-    made = card(ContactFormula(name="d", title="", sources=(), law=law, typed=typed), STEEL, drop, "", *NONE)
+    made = card(
+        ContactFormula(name="d", title="", sources=(), law=law, typed=typed), STEEL, drop, "", Bodies()
+    )
     *told, last = card_words.rows(made)
     back = math.exp(-math.pi * 0.75 / math.sqrt(1 - 0.75**2))  # of a linear spring that may pull
     assert [line[2] for line in told[3:]] == [f"{back:.4f}", "#NOROOT!"]

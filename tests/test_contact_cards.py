@@ -17,7 +17,7 @@ from loopsheet.derivations.contact.model import ContactModel
 from loopsheet.derivations.contact.models import LEDGER, MODELS
 from loopsheet.report.cards import contacts_of, drops_of
 from loopsheet.report.cli import main
-from loopsheet.report.impacts.card import Unreachable, solved
+from loopsheet.report.impacts.card import Bodies, Unreachable, solved
 from loopsheet.report.impacts.contact import formula
 from loopsheet.report.impacts.simulation import simulate
 from loopsheet.report.impacts.source import SOURCES, modelled
@@ -101,7 +101,7 @@ def test_a_model_without_its_constant_has_no_card() -> None:
     drops = drops_of(shipped)
     lacking = formula(johnson.JOHNSON, {johnson.p_d: float("nan")}, LEDGER.vocabulary)
     with pytest.raises(Unreachable, match="E_1 has no value"):
-        solved(lacking, drops, drops.middle, None, 0.3, drops.radius)
+        solved(lacking, drops, drops.middle, Bodies(None, 0.3, drops.radius))
 
 
 @pytest.mark.parametrize(

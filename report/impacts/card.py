@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from scipy.optimize import brentq
 from sympy import Expr, Symbol
@@ -35,15 +36,18 @@ class Unreachable(Exception):
     """No parameters make the formula return what was measured; the message says why."""
 
 
-def card(
-    code: ContactFormula,
-    drops: Drops,
-    drop: Drop,
-    of: str,
-    modulus: float | None,
-    poisson: float,
-    radius: float,
-) -> Card:
+class Bodies(NamedTuple):
+    """What is known of both bodies besides their masses, in SI; NaN is what is not."""
+
+    modulus: float | None = None
+    """Young's, if the stiffness shall be Hertz's; else it is the one with which the greatest approach (of a
+    law with an imprint: the imprint) is that of the drop."""
+    poisson: float = math.nan
+    radius: float = math.nan
+    """The effective one."""
+
+
+def card(code: ContactFormula, drops: Drops, drop: Drop, of: str, bodies: Bodies) -> Card:
     """Make a card.
 
     Parameters
@@ -56,18 +60,15 @@ def card(
         The impact that the card is for.
     of : str
         The title of the report.
-    modulus : float or None
-        Young's modulus of both bodies in Pa, if the stiffness shall be Hertz's; else it is the one with which
-        the greatest approach (of a law with an imprint: the imprint) is that of the drop.
-    poisson, radius : float
-        Poisson's ratio, and the effective radius in m.
+    bodies : Bodies
+        What is taken of them.
 
     Raises
     ------
     Unreachable
         The formula cannot return this restitution.
     """
-    constants, found, notes = solved(code, drops, drop, modulus, poisson, radius)
+    constants, found, notes = solved(code, drops, drop, bodies)
     rows, why = [], dict[str, None]()
     for test in drops.tests:
         again = simulate(code.law, constants, drops.mass, test.speed)
@@ -82,7 +83,7 @@ def card(
             float((one.symbol * one.scale).subs(constants)),
             one.unit,
             one.meaning,
-            one.value is None and not _by_hertz(code, one, modulus),
+            one.value is None and not _by_hertz(code, one, bodies.modulus),
         )
         for one in code.typed
     )
@@ -110,14 +111,14 @@ def card(
 
 
 def solved(
-    code: ContactFormula, drops: Drops, drop: Drop, modulus: float | None, poisson: float, radius: float
+    code: ContactFormula, drops: Drops, drop: Drop, bodies: Bodies
 ) -> tuple[dict[Symbol, float], Impact, list[str]]:
     """The constants with which it returns what was measured, in SI, the impact, and what was done for it.
 
     As for :func:`card`.
     """
     if isinstance(code, SimulationCode):
-        solver = _Solver(code, drops, drop, modulus, poisson, radius)
+        solver = _Solver(code, drops, drop, bodies)
         return *solver.solved(), solver.notes
     known = {one.symbol: one.value.subs(e, drop.e) for one in code.typed if one.value is not None}
     constants = {symbol: float(value) for symbol, value in known.items()}
@@ -172,13 +173,11 @@ class _Solver:
     code: SimulationCode
     drops: Drops
     drop: Drop
-    modulus: float | None
-    poisson: float
-    radius: float
+    bodies: Bodies
 
     def __post_init__(self) -> None:
         self.imprints = self.code.law.imprint != 0
-        self.hertzian = self.modulus is not None and self.code.by_hertz is not None
+        self.hertzian = self.bodies.modulus is not None and self.code.by_hertz is not None
         self.notes: list[str] = []
         self.wanted = self.drop.x_p if self.imprints else self.drop.x_m
         if self.hertzian:
@@ -202,11 +201,11 @@ class _Solver:
             v_0: self.drop.speed,
             alpha: curve,
             depth: self.drop.x_m if math.isfinite(self.drop.x_m) else self.wanted,
-            nu: self.poisson,
-            R: self.radius,
-            E: self.modulus or math.nan,
+            nu: self.bodies.poisson,
+            R: self.bodies.radius,
+            E: self.bodies.modulus or math.nan,
         }
-        found = {R: self.radius, nu: self.poisson}
+        found = {R: self.bodies.radius, nu: self.bodies.poisson}
         found |= {
             one.symbol: float(one.value.subs(given)) for one in self.code.typed if one.value is not None
         }
@@ -233,7 +232,7 @@ class _Solver:
             return math.exp(brentq(excess, *_STIFFNESSES, xtol=1e-6))
         except (ArithmeticError, ValueError) as error:
             least, most = map(math.exp, _STIFFNESSES)
-            given = f" with R = {self.radius:g} m" if R in self.code.law.constants else ""
+            given = f" with R = {self.bodies.radius:g} m" if R in self.code.law.constants else ""
             raise Unreachable(
                 f"no stiffness from {least:.0e} to {most:.0e} in SI units stops the bodies after "
                 f"{self.wanted:g} m{given}"

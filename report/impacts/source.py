@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from sympy import Expr, Float, ccode, pycode
 
-from .card import solved
+from .card import Bodies, solved
 from .code import ContactFormula
 from .drops import Drop, Drops
 from .law import ForceLaw
@@ -61,7 +60,7 @@ def modelled(formula: ContactFormula, drops: Drops, drop: Drop) -> WrittenLaw:
     Unreachable
         One is not, or the law has no impact for them.
     """
-    constants, found, _ = solved(formula, drops, drop, None, math.nan, math.nan)
+    constants, found, _ = solved(formula, drops, drop, Bodies())
     numbers = {symbol: Float(repr(value), 17) for symbol, value in constants.items()}
     law = formula.law.with_numbers(numbers)
     told = (f"{one.word} = {constants[one.symbol]:.9g} {one.unit}" for one in formula.typed)
