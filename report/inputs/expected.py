@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Protocol, Self, TypeVar
 
 from ..cells.address import index_text, named, parts
 from ..messages.errors import Findings, Location, listing, suggest
-from .parameters import wrong_type
 
 if TYPE_CHECKING:
     from .tables import TomlTables
@@ -114,10 +113,7 @@ class Expectation(OfCell):
 def read_expected(tables: TomlTables) -> tuple[Expectation, ...]:
     """Read the section; what is wrong with it is told where it stands."""
     toml, path = tables.toml, "expected"
-    table = toml.data.get(path, {})
-    if not isinstance(table, dict):
-        wrong_type(toml, tables.findings, (path,), "a table [expected]", EXAMPLE)
-        return ()
+    table = tables.table((path,), "a table [expected]", EXAMPLE)
     # What has no reason is refused, and its cell is looked at all the same.
     reasons = {address: tables.text((path,), address, "double bounce heard") for address in table}
     return tuple(

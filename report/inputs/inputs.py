@@ -544,13 +544,8 @@ class _Reader:
     def errata(self, measurements: Sequence[Measurements]) -> dict[tuple[str, int], Printed]:
         """Read what measured cells would have to be printed as: ``"x_p[2]" = "29.8"``."""
         path = ("published", "errata")
-        table = self.toml.data.get("published", {}).get("errata", {})
-        if not isinstance(table, dict):
-            example = '"x_p[2]" = "29.8"'
-            wrong_type(self.toml, self.findings, path, "a table of cells and their prints", example)
-            table = {}
         found = {}
-        for address in table:
+        for address in self.tables.table(path, "a table of cells and their prints", '"x_p[2]" = "29.8"'):
             text = self.tables.text(path, address, "29.8")
             place = self.cell(address, measurements, self.toml.key(*path, address))
             if text is None or place is None:

@@ -36,15 +36,10 @@ class TomlTables:
         besides, names of the folder's own; `alone`: in place of all others. `why_not`: what helps with a key
         that has a meaning elsewhere.
         """
-        data: Any = self.toml.data
-        for name in table:
-            data = data.get(name, {})
         known = (*own, *(() if alone else fixed(*table)))
         where = "[" + ".".join(table) + "]" if table else "report.toml"
-        if not isinstance(data, dict):
-            # A key above the first table header and a table of the same name look alike to a beginner.
-            wrong_type(self.toml, self.findings, table, f"a table {where}", f"{where} on a line of its own")
-            return {}
+        # A key above the first table header and a table of the same name look alike to a beginner.
+        data = self.table(table, f"a table {where}", f"{where} on a line of its own")
         for key in data:
             if key not in known:
                 suggestion = for_left_out(key) or why_not(key) or suggest(key, known)
@@ -58,6 +53,19 @@ class TomlTables:
                     suggestion=suggestion,
                 )
         return {key: value for key, value in data.items() if key in known}
+
+    def table(self, path: tuple[str, ...], wanted: str, example: str) -> dict[str, Any]:
+        """Return a table with whatever is in it; an absent one, or no table at all, is empty.
+
+        `wanted` and `example`: what is told of one that is no table.
+        """
+        data: Any = self.toml.data
+        for name in path:
+            data = data.get(name, {}) if isinstance(data, dict) else {}
+        if isinstance(data, dict):
+            return data
+        wrong_type(self.toml, self.findings, path, wanted, example)
+        return {}
 
     def text(
         self, table: tuple[str, ...], key: str, example: str | None = None, required: bool = False

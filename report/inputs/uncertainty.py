@@ -205,13 +205,8 @@ class _Reader:
 
     def names(self, table: str) -> tuple[str, ...]:
         """The keys of a table of the section, whatever they are."""
-        section: Any = self.toml.data.get(SECTION, {})
-        found = section.get(table, {}) if isinstance(section, dict) else {}
-        if not isinstance(found, dict):
-            example = f"[{SECTION}.{table}]"
-            wrong_type(self.toml, self.findings, (SECTION, table), f"a table {example}", example)
-            return ()
-        return tuple(found)
+        example = f"[{SECTION}.{table}]"
+        return tuple(self.tables.table((SECTION, table), f"a table {example}", example))
 
     def statement(self, path: tuple[str, ...], of: str) -> StatedErrors | None:
         """What a text says of a column, whose unit is that of what has none."""
