@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from ..messages.errors import Findings
-from .expected import NO_WORDS, Expectation, Words, check_expected
+from .expected import Cells, Expectation, Words, check_expected
 from .inputs import Inputs
 from .limits import check_limits, of_every_row
 from .measurements import Measurements
@@ -16,8 +16,8 @@ from .published import check_published
 
 def check_cells(
     inputs: Inputs,
-    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
-    words: Words = NO_WORDS,
+    cells: Cells,
+    words: Words = MappingProxyType({}),
     beneath: Mapping[str, Collection[Measurements]] = MappingProxyType({}),
 ) -> Inputs:
     """Check all that was read of cells against those of the sheet.
@@ -28,10 +28,6 @@ def check_cells(
     ----------
     inputs : Inputs
         What was read.
-    cells : mapping of str to (str, collection of tuple of int)
-        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
-    words
-        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     beneath : mapping of str to collection of Measurements
         For each cell the tables whose rows its own are made of.
 

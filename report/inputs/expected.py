@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, Self, TypeVar
 
 from ..cells.address import index_text, named, parts
@@ -16,11 +15,12 @@ if TYPE_CHECKING:
 
 Index = tuple[int, ...]
 Words = Mapping[str, Mapping[Index, str]]
+"""For each cell what its rows are known by, by their indices."""
+Cells = Mapping[str, tuple[str, Collection[Index]]]
+"""For each cell its unit and the indices that it has: ``{()}`` for a scalar."""
 
 EXAMPLE = '"alpha[1-2]" = "both drops from one height"'
 """A line of the section."""
-
-NO_WORDS: Words = MappingProxyType({})
 
 _ROW = re.compile(r"(?P<word>[^\W\d]\w*) +(?P<number>[0-9]{1,9})")
 
@@ -135,9 +135,9 @@ def row_of(word: str, words: Mapping[Index, str]) -> Index | None:
 def check_expected(
     expected: Sequence[OfCell],
     tables: Sequence[OfRows],
-    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    cells: Cells,
     findings: Findings,
-    words: Words = NO_WORDS,
+    words: Words,
 ) -> None:
     """Find what is expected of cells and tests that there are not.
 
@@ -145,12 +145,8 @@ def check_expected(
     ----------
     tables : sequence of OfRows
         The tables of rows that there are.
-    cells : mapping of str to (str, collection of tuple of int)
-        For each cell its unit and the indices that it has: ``{()}`` for a scalar.
     findings : Findings
         Where unknown cells, indices and tests go.
-    words : mapping of str to mapping of tuple of int to str
-        For each cell what its rows are known by, by their indices.
     """
     called = [f"{table.row} {test}" for table in tables for test in table.tests]
     first = [f"{table.row} {test}" for table in tables for test in table.tests[:1]]

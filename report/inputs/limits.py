@@ -27,7 +27,7 @@ from ..cells.address import address
 from ..distribution import LEVEL
 from ..messages.errors import listing
 from ..quantity import Bounds, behind, span
-from .expected import NO_WORDS, OfCell, Words, check_expected
+from .expected import Cells, OfCell, Words, check_expected
 from .keys import fixed
 from .number_text import NumberError, read_number, read_printed
 from .published import unit_fits
@@ -284,13 +284,8 @@ def _level(text: str) -> float:
     return float(number)
 
 
-def of_every_row(
-    limits: Sequence[Limits], cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]]
-) -> Iterator[Limits]:
-    """Limits of cells: those of a column are of each of its rows that has none of its own.
-
-    `cells`: as for :func:`check_limits`.
-    """
+def of_every_row(limits: Sequence[Limits], cells: Cells) -> Iterator[Limits]:
+    """Limits of cells: those of a column are of each of its rows that has none of its own."""
     own = {each.cell for each in limits}
     for each in limits:
         name, index = each.cell
@@ -302,17 +297,9 @@ def of_every_row(
             yield from (replace(each, address=address(name, row)) for row in every)
 
 
-def check_limits(
-    limits: Sequence[Limits],
-    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
-    findings: Findings,
-    words: Words = NO_WORDS,
-) -> None:
-    """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K.
-
-    `cells`: as for :func:`~loopsheet.report.inputs.expected.check_expected`. `words`: as there.
-    """
-    check_expected(limits, (), cells, findings, words=words)
+def check_limits(limits: Sequence[Limits], cells: Cells, findings: Findings, words: Words) -> None:
+    """Find limits of cells that there are not, twice of one, in a unit of another dimension, or below 0 K."""
+    check_expected(limits, (), cells, findings, words)
     for each in limits:
         name, index = each.cell
         if name not in cells or index not in cells[name][1]:

@@ -13,7 +13,7 @@ from ..cells.address import index_text
 from ..messages.errors import Findings, Location, listing, suggest
 from .about import FORMS, About, read_about
 from .csvtable import CsvTable, Field, match_columns, read_table
-from .expected import NO_WORDS, Words, row_of, rows
+from .expected import Cells, Words, row_of, rows
 from .keys import PUBLISHED
 from .number_text import NumberError, read_number, read_printed, with_uncertainty
 
@@ -247,10 +247,10 @@ def _number(table: CsvTable, number: Field, unit: ParsedUnit, cell: str, finding
 def check_published(
     published: Sequence[PublishedValue],
     free: Mapping[str, Location],
-    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    cells: Cells,
     tables: Collection[Measurements],
     findings: Findings,
-    words: Words = NO_WORDS,
+    words: Words,
 ) -> None:
     """Compare what the published values are values of with the cells of the sheet.
 
@@ -258,15 +258,12 @@ def check_published(
     ----------
     free : mapping of str to Location
         The columns that the publication does not print, with the place that says so.
-    cells : mapping of str to (str, collection of tuple of int)
-        For each cell its unit and the indices that it has: ``{()}`` for a scalar. A unit that is not
-        fixed, such as ``N/m^alpha``, has no other that it converts to.
+    cells : Cells
+        A unit that is not fixed, such as ``N/m^alpha``, has no other that it converts to.
     tables : collection of Measurements
         The tables of measurements.
     findings : Findings
         Where unknown cells and indices go, and units of another dimension.
-    words
-        As for :func:`~loopsheet.report.inputs.expected.check_expected`.
     """
     gone = _of_rows_that_are_gone(published, cells, tables, findings, words)
     for name, place in free.items():
@@ -302,7 +299,7 @@ def check_published(
 
 def _of_rows_that_are_gone(
     published: Sequence[PublishedValue],
-    cells: Mapping[str, tuple[str, Collection[tuple[int, ...]]]],
+    cells: Cells,
     tables: Collection[Measurements],
     findings: Findings,
     words: Words,

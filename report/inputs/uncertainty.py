@@ -134,7 +134,7 @@ def read_uncertainty(
     declared: Mapping[str, Declared],
     measured: Sequence[Measurements],
     said: Conventions,
-    sheet: Callable[[], Sheet] | None = None,
+    sheet: Callable[[], Sheet] | None,
 ) -> Stated:
     """Read the section; what is wrong with it is told where it stands.
 

@@ -451,9 +451,7 @@ class _Oddities:
         )
         return self.check(SQUARES, name, said, _Odd(self, [cell], "is improbable"))
 
-    def by_chance(
-        self, cell: Cell, found: str, axis: str, large: float, small: float, instead: str = ""
-    ) -> Check:
+    def by_chance(self, cell: Cell, found: str, axis: str, large: float, small: float, instead: str) -> Check:
         """What to say of a sum of squares with the probabilities of so much and of so little."""
         if min(large, small) >= RARE:
             return Check(SQUARES, cell.name, True, f"{found}, which is what chance makes", self.inputs.place)

@@ -257,10 +257,7 @@ class Convolved(Law):
 
 
 def convolved(
-    sources: Sequence[ErrorSource],
-    contributions: Array,
-    u: float,
-    pairs: Sequence[tuple[int, int, float]] = (),
+    sources: Sequence[ErrorSource], contributions: Array, u: float, pairs: Sequence[tuple[int, int, float]]
 ) -> Convolved | None:
     """The distribution of a sum of errors; None where all of them are normal or t, or a width is not certain.
 
