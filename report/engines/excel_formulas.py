@@ -313,7 +313,7 @@ class Writing:
 
     def total(self, terms: Expr, axis: str, word: Word) -> str:
         """What is taken over the rows that have values."""
-        text = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True).doprint(terms)
+        text = self.printer_of_rows.doprint(terms)
         # Of a text, no reader takes account.
         otherwise = "0" if word == "sum" else '""'
         return f"{word.upper()}(IF({self.mask(axis)},{text},{otherwise}))"
@@ -360,6 +360,11 @@ class Writing:
     def printer(self) -> ExcelPrinter:
         """What prints with these addresses."""
         return ExcelPrinter(self.symbol, self.total)
+
+    @cached_property
+    def printer_of_rows(self) -> ExcelPrinter:
+        """The same with those of all rows."""
+        return ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True)
 
     def number(self, expression: Expr) -> str:
         """A value in the cells' unit."""

@@ -400,31 +400,28 @@ class _Printing(Writing):
 
     def summed(self, terms: Iterable[Term]) -> Iterator[str]:
         """Terms of all rows."""
-        printer = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True)
         for guard, own in _by(terms, partial(self.guard, rows=True)):
-            text = printer.doprint(Add(*map(self.product, own)))
+            text = self.printer_of_rows.doprint(Add(*map(self.product, own)))
             yield f"SUM(IF({guard},{text},0))" if guard else f"SUM(IF(1=1,{text},0))"
 
     def repeated_texts(self, terms: Iterable[Term], axis: str) -> Iterator[str]:
         """Terms of the rows that repeat the own one: either all have values, or none does."""
         self.segment = axis
-        printer = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True)
         for rows, own in _by(terms, self.guard):
-            text = printer.doprint(Add(*map(self.product, own)))
+            text = self.printer_of_rows.doprint(Add(*map(self.product, own)))
             self.array |= "IF(" in text
             yield f"IF(COUNT({rows})=0,0,SUMPRODUCT(ISNUMBER({rows})*({text})))"
         self.segment = ""
 
     def of_pairs(self, terms: Iterable[Term], axis: str) -> Iterator[str]:
         """Terms of all pairs that name the own row."""
-        printer = ExcelPrinter(partial(self.symbol, rows=True), self.total, rows=True)
         own = self.fill(self.places.indices[axis][0])
         for (rows, index), some in _by(terms, lambda term: (term.rows, term.index)):
             pairs = self.slopes.axes[rows]
             assert isinstance(pairs, PairAxis)
             parts = self.places.indices[rows]
             member = parts[pairs.members.index(index) * len(parts) // 2]
-            text = printer.doprint(Add(*(self.product(term, spread=True) for term in some)))
+            text = self.printer_of_rows.doprint(Add(*(self.product(term, spread=True) for term in some)))
             self.array |= "IF(" in text
             yield f"SUMPRODUCT(({member.range(self.here)}={own})*({text}))"
 
