@@ -306,6 +306,11 @@ def stated(value: float, u: float, most: int = MOST) -> tuple[Numeral, Numeral]:
         return _written(_to(value, place), place, power), _written(told, place, power)
 
 
+def finite(value: float | None) -> float | None:
+    """A number as JSON can hold it, which has none that are not finite."""
+    return float(value) if value is not None and math.isfinite(value) else None
+
+
 def table_format(figures: Iterable[Numeral | None]) -> str:
     """The ``table-format`` of siunitx that holds all numbers of a column.
 

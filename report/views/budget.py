@@ -12,7 +12,7 @@ from ..distribution import Shape
 from ..quantity import behind
 from ..result import uncertain
 from ..result.conformity import lines
-from ..result.numbers import decimals, rounded, stated
+from ..result.numbers import decimals, finite, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
 from .blocks import Block, TextTable, printers
@@ -80,14 +80,14 @@ def _as_json(report: Report, budget: uncertain.Budget, besides: Besides = NOTHIN
             "schema": 1,
             "cell": budget.cell,
             "unit": report.sheet[budget.name].unit,
-            "value": number(budget.value),
-            "u": number(budget.u),
-            "dof": number(budget.dof),
+            "value": finite(budget.value),
+            "u": finite(budget.u),
+            "dof": finite(budget.dof),
             "level": budget.level,
-            "k": number(budget.factor),
+            "k": finite(budget.factor),
             "k_from": budget.because,
-            "U": number(budget.expanded),
-            "second_order_share": number(budget.second / budget.u**2) if budget.u else 0.0,
+            "U": finite(budget.expanded),
+            "second_order_share": finite(budget.second / budget.u**2) if budget.u else 0.0,
             "second_order_unknown": budget.unlooked or None,
             "sources": [_source(each) for each in budget.contributions],
             "summed": {
@@ -119,10 +119,10 @@ def _source(each: uncertain.Contribution) -> dict[str, object]:
         "unit": each.unit,
         "u": source.u,
         "distribution": source.shape.value,
-        "dof": number(source.dof),
-        "sensitivity": number(each.sensitivity),
-        "contribution": number(each.u),
-        "share": number(each.share),
+        "dof": finite(source.dof),
+        "sensitivity": finite(each.sensitivity),
+        "contribution": finite(each.u),
+        "share": finite(each.share),
     }
 
 
@@ -282,33 +282,33 @@ def _drawn(drawn: uncertain.Distributed) -> dict[str, object]:
     return {
         "draws": drawn.number,
         "without_value": drawn.lost,
-        "median": number(drawn.median),
-        "mean": number(drawn.mean),
-        "u": number(drawn.u),
-        "interval": list(map(number, drawn.symmetric)),
-        "shortest": list(map(number, drawn.shortest)),
-        "tail_index": number(drawn.tail),
+        "median": finite(drawn.median),
+        "mean": finite(drawn.mean),
+        "u": finite(drawn.u),
+        "interval": list(map(finite, drawn.symmetric)),
+        "shortest": list(map(finite, drawn.shortest)),
+        "tail_index": finite(drawn.tail),
         "stable": drawn.stable,
         "tolerance": drawn.tolerance,
-        "differences": list(map(number, drawn.differences)),
+        "differences": list(map(finite, drawn.differences)),
         "validates": drawn.validates,
     }
 
 
 def _conformity(found: uncertain.Conformity) -> dict[str, object]:
     return {
-        "limits": list(map(number, found.limits.ends)),
+        "limits": list(map(finite, found.limits.ends)),
         "level": found.limits.guard.level,
-        "guard": number(found.guard),
-        "acceptance": list(map(number, found.acceptance)),
+        "guard": finite(found.guard),
+        "acceptance": list(map(finite, found.acceptance)),
         "decision": found.decision.value,
         "because": found.because,
         "distribution": found.by.shape.value,
-        "probability": number(found.probability),
-        "below": number(found.below),
-        "above": number(found.above),
-        "consumer_risk": number(found.consumer_risk),
-        "producer_risk": number(found.producer_risk),
+        "probability": finite(found.probability),
+        "below": finite(found.below),
+        "above": finite(found.above),
+        "consumer_risk": finite(found.consumer_risk),
+        "producer_risk": finite(found.producer_risk),
     }
 
 
@@ -320,8 +320,3 @@ def percent(share: float) -> str:
 def _unit(report: Report, name: str) -> tuple[str, float]:
     how = report.shown[name]
     return behind(how.unit), how.scale
-
-
-def number(value: float | None) -> float | None:
-    """A number for JSON, which has none that are not finite."""
-    return value if value is not None and math.isfinite(value) else None

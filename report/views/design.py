@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ..quantity import behind
 from ..result.design import Planned
-from ..result.numbers import rounded
+from ..result.numbers import finite, rounded
 from .blocks import Block, TextTable, printers
-from .budget import notes, number, percent, sentence
+from .budget import notes, percent, sentence
 
 
 def _header(plan: Planned) -> list[str]:
@@ -118,10 +118,10 @@ def _as_json(plan: Planned) -> str:
         {
             "test": test,
             **{
-                name: {"value": number(float(report.values.value[name][row])), "u": number(float(u[row]))}
+                name: {"value": finite(float(report.values.value[name][row])), "u": finite(float(u[row]))}
                 for name, u in plan.u.items()
             },
-            "share": number(plan.of_tests[test]),
+            "share": finite(plan.of_tests[test]),
         }
         for row, test in enumerate(report.inputs.only.tests)
     ]
@@ -129,21 +129,21 @@ def _as_json(plan: Planned) -> str:
         "schema": 1,
         "cell": budget.cell,
         "unit": report.sheet[budget.name].unit,
-        "value": number(budget.value),
-        "u": number(budget.u),
-        "k": number(budget.factor),
-        "U": number(budget.expanded),
-        "level": number(budget.level),
-        "second_order_share": number(budget.second / budget.u**2) if budget.u else 0.0,
-        "curve": {name: number(plan.followed.values.scalar(name)) for name in plan.curve},
+        "value": finite(budget.value),
+        "u": finite(budget.u),
+        "k": finite(budget.factor),
+        "U": finite(budget.expanded),
+        "level": finite(budget.level),
+        "second_order_share": finite(budget.second / budget.u**2) if budget.u else 0.0,
+        "curve": {name: finite(plan.followed.values.scalar(name)) for name in plan.curve},
         "tests": tests,
-        "shares": {name: number(share) for name, share in plan.shares.items()},
+        "shares": {name: finite(share) for name, share in plan.shares.items()},
         "warnings": _warnings(plan),
         "best": best
         and {
             "between": best.ends,
-            "u": number(best.u),
-            "u_equal_steps": number(best.u_equal),
+            "u": finite(best.u),
+            "u_equal_steps": finite(best.u_equal),
             "tried": best.tried,
         },
         "needed": needed
@@ -151,8 +151,8 @@ def _as_json(plan: Planned) -> str:
             "of": needed.of,
             "unit": report.sheet[needed.of].unit,
             "wanted": needed.wanted,
-            "u": number(needed.u),
-            "others": number(needed.others),
+            "u": finite(needed.u),
+            "others": finite(needed.others),
             "out_of_reach": needed.is_out_of_reach,
         },
     }

@@ -22,6 +22,7 @@ from ..machine.staging import put
 from ..messages.diagnostics import Check
 from ..result import verdict_data
 from ..result.conformity import accepted
+from ..result.numbers import finite
 from ..result.result import Comparison, Report
 from ..result.uncertain import Budget, Conformity, ErrorSource
 from ..result.verdict import Verdict
@@ -82,13 +83,13 @@ def _expanded(budget: Budget) -> form.Expanded:
 
 
 def _decided(report: Report, found: Conformity) -> form.Conformity:
-    low, high = map(_finite, found.acceptance)
+    low, high = map(finite, found.acceptance)
     return form.Conformity(
         cell=found.budget.cell,
         limits=str(found.limits),
         acceptance=(low, high),
         accepted=accepted(report, found) if found.guard > 0 else "",
-        probability=_finite(found.probability),
+        probability=finite(found.probability),
         decision=found.decision.value,
     )
 
@@ -186,15 +187,11 @@ def _fifteen(u: float) -> float:
 def _error(source: ErrorSource) -> form.Source:
     """A source, by its name where it was stated."""
     report, name = source.origin or ("", source.name)
-    dof, law = _finite(source.dof), source.law
-    ends = (_finite(law.low), _finite(law.high)) if isinstance(law, TruncatedNormal) else UNSET
+    dof, law = finite(source.dof), source.law
+    ends = (finite(law.low), finite(law.high)) if isinstance(law, TruncatedNormal) else UNSET
     return form.Source(
         name=name, report=report, distribution=source.shape.value, ends=ends, dof=dof, sample=source.sample
     )
-
-
-def _finite(number: float) -> float | None:
-    return float(number) if math.isfinite(number) else None
 
 
 def _short(u: float) -> float | None:
