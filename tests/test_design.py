@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import pairwise
@@ -297,3 +298,15 @@ def test_without_any_error_a_number_is_exact(capsys: pytest.CaptureFixture[str])
     assert "alpha_log = 1.3023464025015523, exactly" in told(
         capsys, "paper", "--u", "v = 0; e = 0; x_p = 0", "--cell", "alpha_log"
     )
+
+
+def test_planned_tests_have_no_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The second is none of the specimen that stands in the second row of what was measured."""
+    shutil.copytree(PAPER, tmp_path / "named", ignore=lambda *_: ["out"])
+    table = tmp_path / "named" / "measurements.csv"
+    head, *rows = table.read_text(encoding="utf-8").splitlines()
+    named = "".join(f"{row},S-{n}\n" for n, row in enumerate(rows, start=1))
+    table.write_text(f"{head},specimen\n{named}", encoding="utf-8")
+    out = told(capsys, str(tmp_path / "named"), "--speeds", "4.9, 2.1, 3 m/s")
+    assert "matters most" in out
+    assert "S-" not in out

@@ -336,6 +336,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS318": grouped("77"),
     "LS319": grouped("Bb"),
     "LS320": csv("test,v", "Drop tests of March,,,\ntest,v"),
+    "LS321": lambda: campaign(csv=re.sub(r"(?m)$(?=\n)", ",no", CSV).replace(",no", ",left out", 1)),
     "LS401": csv("2.940", "2.9 40"),
     "LS402": csv("2.940", '"2,940"'),
     "LS403": csv("2,2.940", ",2.940"),

@@ -25,6 +25,10 @@ _LEAVING = {
 }
 
 
+NO_REASONS = {"-", "0", "false", "n", "no", "none"}
+"""What tells in a column of answers that a row stays, and is no reason to leave it out."""
+
+
 def for_left_out(word: str) -> str:
     """What to write instead of a word that somebody takes for the one that leaves a row out; else nothing."""
     told = "a row that takes no part has its reason in a column 'left out' of the table of measurements"

@@ -14,7 +14,7 @@ from ..distribution import Error
 from ..messages.errors import Findings, close, listing
 from ..workbook import RowTable
 from .csvtable import CsvRow, CsvTable, Field, is_number, match_columns, read_table
-from .keys import LEFT_OUT
+from .keys import LEFT_OUT, NO_REASONS
 from .number_text import NumberError, read_printed, read_unit_of, read_value
 from .spelling import Alike, alike, in_case, same
 from .stated import PERCENT
@@ -204,7 +204,9 @@ def read_measurements(
     if measured is None and "test" not in reading.places:
         return None  # its rows may be called as the workbook says, which is not known
     tests, reasons = reading.tests(), reading.fields(LEFT_OUT)
-    gone = {place for place, reason in enumerate(reasons) if reason.text}
+    if answer := next((each for each in reasons if each.text.lower() in NO_REASONS), None):
+        findings.add("LS321", table.at(answer), text=answer.text, name=of.row)
+    gone = {place for place, each in enumerate(reasons) if each.text and each.text.lower() not in NO_REASONS}
     reading.count(len(gone), of.least)
     near = reading.alike(tests)
     used = [row for place, row in enumerate(table.rows) if place not in gone]

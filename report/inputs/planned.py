@@ -167,7 +167,7 @@ def planned(inputs: Inputs, values: Mapping[str, Sequence[float]], like: Sequenc
     taken = {name: taken for name, taken in inputs.taken.items() if name not in said}
     return replace(
         inputs,
-        tables=(replace(inputs.only, tests=tests, measured=stated.of(measured), left_out=()),),
+        tables=(replace(inputs.only, tests=tests, measured=stated.of(measured), left_out=(), remarks=()),),
         parameters={name: printed for name, (printed,) in stated.of(parameters).items()},
         uncertainty=stated,
         published=(),

@@ -209,6 +209,12 @@ CATALOGUE: dict[str, Entry] = {
         "write '{other}'; two groups may differ in case if each has several rows, else in a letter or number",
     ),
     "LS320": Entry("title above names", "columns are named in line {line}", hint="delete what is above it"),
+    "LS321": Entry(
+        "no reason to leave a row out",
+        "'{text}' under 'left out' says no reason, and whatever stands there leaves the {name} out",
+        "a reason, such as: double bounce heard",
+        "leave the field empty if the {name} takes part",
+    ),
     "LS401": Entry(
         "not a number",
         "{name} is not a number: '{text}'",

@@ -50,7 +50,9 @@ def sheet(given: frozenset[str]) -> Sheet:
     names = [column.name for column in soft_impact.sheet(_ALONE).columns]
     fitted = _of_tests(_ALONE, *names[names.index("u_v") :])
     told = {equation.label for equation in LEDGER.equations()}
-    for column in (*_of_tests(_ALONE, "v", "e", "x_p", "beta"), *_masses(given), *fitted):
+    typed = soft_impact.sheet(_ALONE | {"ball_diameter"})
+    measured = typed["v"], typed["e"], typed["x_p"]  # with what no drop test has
+    for column in (*measured, *_of_tests(_ALONE, "beta"), *_masses(given), *fitted):
         if column.equation is None or column.equation.label in told:
             laid.add(column)
     if "ball_diameter" not in laid.columns:
