@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 
 EXAMPLE = '{ from = "balance/values.json", cell = "m" }'
 _KEYS = TABLES["parameters", ANY]
+_AGAIN = "build that report again, and take what its result tells"
 Origin = tuple[str, str]
 """Of an error: the sha256 of the inputs of the report where it was stated, and its name there."""
 
@@ -185,19 +186,21 @@ def open_result(data: bytes, file: Path, name: str, at: Location, findings: Find
     from ..files.values import Result
 
     folder = file.parents[len(PurePath(name).parts) - 1]
+    words = {"file": name, "known": "what 'build' writes", "suggestion": _AGAIN}
     if file.parent.resolve() == output(folder).resolve():
         reason = "is what this report itself was built to: each build would begin with the last one"
-        findings.add("LS437", at, file=name, reason=reason, known="the values.json of another report")
+        words["known"] = "the values.json of another report"
+        findings.add("LS437", at, reason=reason, **words)
         return None
     try:
         found = decoded(data, Result)
     except Malformed as error:
         reason = f"is no values.json: {error}"
-        findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
+        findings.add("LS437", at, reason=reason, **words)
         return None
     if not is_as_built(file, data):
         reason = "was changed after it was built: the manifest beside it has another fingerprint"
-        findings.add("LS437", at, file=name, reason=reason, known="what 'build' writes")
+        findings.add("LS437", at, reason=reason, **words)
         return None
     return found
 
@@ -321,7 +324,12 @@ class _Reader:
             told = self.influences.known if self.influences else ()
             known = listing(told) or "a file that tells of influences"
             whose = self.cell if len(silent) == len(labels) else listing(silent)
-            self.refuse(f"does not tell where the uncertainty of {whose} comes from", known)
+            again = (
+                "take one of these: a report by a workbook that ships tells of no other cells"
+                if told
+                else _AGAIN
+            )
+            self.refuse(f"does not tell where the uncertainty of {whose} comes from", known, again)
 
     def number(self, label: Index, where: str) -> Number:
         """A number that can be taken, and its errors."""
@@ -365,8 +373,9 @@ class _Reader:
         words = {"known": listing(known) or "none of a row a test", "suggestion": suggest(self.cell, known)}
         self.findings.add("LS505", self.at, text=self.cell, **words)
 
-    def refuse(self, reason: str, known: str) -> None:
-        self.findings.add("LS437", self.at, file=self.file, reason=reason, known=known)
+    def refuse(self, reason: str, known: str, suggestion: str = _AGAIN) -> None:
+        words = {"reason": reason, "known": known, "suggestion": suggestion}
+        self.findings.add("LS437", self.at, file=self.file, **words)
 
 
 def _shape(source: Source) -> tuple[Shape, Law | None]:

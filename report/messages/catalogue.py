@@ -326,7 +326,7 @@ CATALOGUE: dict[str, Entry] = {
         "nothing to take",
         "'{file}' {reason}",
         "{known}",
-        "build that report again, and take what its result tells",
+        "{suggestion}",
     ),
     "LS441": Entry(
         "not limits",
