@@ -30,7 +30,7 @@ def write_report(
     """Write the first worksheet: what came out, what went in, how to use the workbook."""
     scalars = grid.on(SCALARS, "given", "computed", "margin")
     names = max([18, *(1.15 * len(block.name) for block in scalars)])
-    style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 22, 40))
+    style.page(sheet, report.title, report.workbook.title, (names, 17, 15, 52, 12, 10, 36, 22))
     style.formula(sheet, 2, 0, inputs.summary(), "", style("error"))
     groups = list(_groups(scalars))
     row = 2  # of what is told there, if there are no scalars
@@ -38,17 +38,17 @@ def write_report(
         row = max(row, _write_results_in_rows(sheet, style, report, grid, TOP - 4, stated))
     for group in groups:
         row, given = group[0].place.row, group[0].kind == "given"
-        # Beside what is given stands its check.
+        # Beside what is given stands its check. Over which rows a result is may be long: it comes last.
         said = not given and any(block.name in stated for block in group)
         style.section(sheet, row - 2, _title(report, group), 8 if said else 7)
-        last = ("as checked", "check") if given else ("computed from", *(_WITH_U,) * said)
+        last = ("as checked", "check") if given else (*(_WITH_U,) * said, "computed from")
         for at, head in enumerate(("name", "value", "unit", "meaning", "equation", "symbol", *last)):
             style.text(sheet, row - 1, at, head, "head")
         for block in group:
             row = block.place.row
-            _write_scalar(sheet, style, report, grid, block, inputs)
+            _write_scalar(sheet, style, report, grid, block, inputs, CHECKED + said)
             if said:
-                _write_statement(sheet, style, stated, block.name, row, CHECKED + 1)
+                _write_statement(sheet, style, stated, block.name, row, CHECKED)
         if _title(report, group) == _RESULT:
             row = _write_results_in_rows(sheet, style, report, grid, row, stated)
     _write_notes(sheet, style, report, grid, row + 2)
@@ -76,7 +76,7 @@ def _title(report: Report, group: Sequence[CellBlock]) -> str:
 
 
 def _write_scalar(
-    sheet: Any, style: Style, report: Report, grid: Grid, block: CellBlock, inputs: GivenCells
+    sheet: Any, style: Style, report: Report, grid: Grid, block: CellBlock, inputs: GivenCells, last: int
 ) -> None:
     column, row = report.marks.values.sheet[block.name], block.place.row
     style.text(sheet, row, 0, block.name, "name")
@@ -94,7 +94,7 @@ def _write_scalar(
         write_block(sheet, style, report, grid[checked(block.name)], inputs)
     if block.kept:
         formula, value = counted(report, grid, block)
-        style.formula(sheet, row, 6, formula, value, style("text"), array=True)
+        style.formula(sheet, row, last, formula, value, style("text"), array=True)
 
 
 def _write_statement(sheet: Any, style: Style, stated: Stated, cell: str, row: int, column: int) -> None:

@@ -149,7 +149,7 @@ def test_marks_are_counted_beside_each_mean(office: Office, name: str) -> None:
         size = values.layouts[axis.name].size
         said = f"{values.counted.get(cell, {}).get(axis.name, size)} of {size} {axis.name}"
         said += "".join(f"; {count.said}" for count in marks.behind(values.sheet[cell]) if count.number)
-        assert office.read[name]["report"][f"G{delivered.grid[cell].place.row + 1}"] == said
+        assert office.read[name]["report"][f"H{delivered.grid[cell].place.row + 1}"] == said
         told.add("outside (4)" in said)
     assert told == {name in ("e of test 3", "no root", "twelve tests")}
 
@@ -270,9 +270,9 @@ def test_a_root_far_from_its_guess_is_reached(office: Office) -> None:
 
 def test_rows_left_out_are_counted(office: Office) -> None:
     row = office.paper.grid["alpha_mean"].place.row + 1
-    assert office.read["as issued"]["report"][f"G{row}"] == "10 of 10 pairs"
-    assert office.read["an empty input"]["report"][f"G{row}"] == "6 of 10 pairs"
-    assert office.read["nothing measured"]["report"][f"G{row}"] == "0 of 10 pairs"
+    assert office.read["as issued"]["report"][f"H{row}"] == "10 of 10 pairs"
+    assert office.read["an empty input"]["report"][f"H{row}"] == "6 of 10 pairs"
+    assert office.read["nothing measured"]["report"][f"H{row}"] == "0 of 10 pairs"
 
 
 def test_published_values_are_compared_again(office: Office) -> None:
