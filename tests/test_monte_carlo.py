@@ -292,3 +292,21 @@ def test_draws_that_are_sorted_at_their_ends_tell_what_sorted_ones_do(number: in
         monte_carlo._tail,
     ):
         assert tell(parted) == tell(ordered)
+
+
+def test_a_mean_of_readings_that_would_be_left_out_is_no_curve(tmp_path: Path) -> None:
+    """Readings whose scatter reaches below 0, where they have no value: the mean is of others there."""
+    method = (
+        "from loopsheet import Method, let, mean, measured\n\n\nclass Length(Method, rows='readings'):\n"
+        "    '''A length.'''\n\n    x = measured('mm', 'reading', positive=True)\n"
+        "    m = let(mean(x), 'mean', 'mm')\n"
+    )
+    (tmp_path / "workbook.py").write_text(method, encoding="utf-8")
+    (tmp_path / "measurements.csv").write_text("reading,x [mm]\n1,2.0\n2,9.0\n3,25.0\n", encoding="utf-8")
+    toml = (
+        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n[uncertainty]\nx = "scatter"\n'
+    )
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    report = Study(tmp_path).computed
+    budget = Spread(report.inputs, report.values).budget("m", 0)
+    assert budget.unlooked == "2 u from what was given its sums run over other rows"

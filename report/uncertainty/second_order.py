@@ -7,7 +7,7 @@ changes are taken from sheets that are computed a little to either side.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -94,11 +94,7 @@ class SecondOrder:
                 self.jumping[node.name] = word
         sheet = values.sheet
         sharp = {c.name for c in sheet.columns if _has_corner(c) and not _only_steers(sheet, c)}
-        self.cornered = {
-            c.name
-            for c in sheet.columns
-            if c.name in sharp or any(a.name in sharp for a in sheet.ancestors(c))
-        }
+        self.cornered = _resting_on(sharp, sheet)
         """What rests on a function that has a corner: near it, derivatives jump."""
         self.above_zero = {name for name in self.cornered if sheet[name].nonnegative}
         self.rough = dict.fromkeys(self.cornered, False) | dict.fromkeys(self.jumping, True)
@@ -114,13 +110,8 @@ class SecondOrder:
             self._through = self._along.whole @ self.weights
         """The derivatives of computed scalars by the errors (steps, scalars, errors)."""
         self._uses = (self._through != 0).any(axis=0)
-        moved = other_rows(near, values)
-        self.torn = {
-            column.name
-            for column in values.sheet.columns
-            if any(each.name in moved for each in (column, *values.sheet.ancestors(column)))
-        }
-        """What rests on sums that run over other rows a step away: slopes of other estimators."""
+        self.torn, self.torn_far = (_resting_on(other_rows(there, values), sheet) for there in (near, far))
+        """What rests on sums that run over other rows a step away, and where U reaches: other estimators."""
         self.overdone = set[str]()
         """What has cells of which the terms of second order take away more than half of the first."""
         self.bending = set[str]()
@@ -165,6 +156,8 @@ class SecondOrder:
             return "it has a corner here (Abs, Max, Min or cases), where derivatives jump"
         if name in self.torn:
             return f"{STEP:.2g} u from what was given its sums run over other rows"
+        if name in self.bending and name in self.torn_far:
+            return f"{FAR:g} u from what was given its sums run over other rows"
         if name in self.bending:
             return (
                 f"it is no straight line as far as {FAR:g} u from what was given, though near its value it is"
@@ -321,6 +314,11 @@ def _creeps(found: Array, value: Array) -> Array:
         seen: NDArray[np.bool_] = (one > 0) & (four > NOISE * np.abs(value))
         least = np.minimum(two / one, four / two)
     return np.where(seen & (least >= 7), np.inf, np.where(seen & (least >= 3), one, 0.0))
+
+
+def _resting_on(names: Collection[str], sheet: Sheet) -> set[str]:
+    """The columns that are one of some, or rest on one."""
+    return {c.name for c in sheet.columns if any(own.name in names for own in (c, *sheet.ancestors(c)))}
 
 
 def beside(values: Values, program: Program, sources: Sequence[ErrorSource], errors: Array) -> Values:
