@@ -117,18 +117,19 @@ def test_the_square_of_what_is_nothing_but_rounding(of_a_cell: bool) -> None:
 def test_what_rests_on_a_root_of_nothing_but_rounding() -> None:
     """The root has no slope at 0, and where it is nothing its square has none either; next to that they have.
 
-    Of readings that are equal: their scatter, its square, the root of that, and again."""
-    scatter = formula("c", sqrt((A - B) ** 2))
-    square = formula("d", scatter.symbol**2)
-    root = formula("g", sqrt(2 * square.symbol))
-    sheet = Sheet((a, b, scatter, square, root, formula("h", root.symbol**2)))
+    Of readings that are equal: their scatter, its square, the root of that, and again, however often."""
+    columns = [a, b, formula("s0", (A - B) ** 2)]
+    for n in range(1, 9):
+        root = formula(f"r{n}", sqrt(columns[-1].symbol))
+        columns += [root, formula(f"s{n}", root.symbol**2)]
+    sheet, off = Sheet(tuple(columns)), (2 * numbers.EPS) ** 2
     values = evaluate(sheet, {}, {"a": 1.0, "b": 1.0})
-    bounds, off = numbers.RoundingBounds(sheet, values.layouts, values.value), 2 * numbers.EPS
-    assert bounds["g"] == [np.inf]
-    for name, difference in (("d", off**2), ("h", 2 * off**2)):
-        assert not bounds[name] > 0
-        allowed = numbers.LIMIT * numbers.EPS * bounds.allowing(name, 0, difference)
-        assert difference <= allowed <= 2.0**20 * difference, name
+    bounds = numbers.RoundingBounds(sheet, values.layouts, values.value)
+    assert bounds["r8"] == [np.inf]
+    for n in range(9):
+        assert not bounds[f"s{n}"] > 0
+        allowed = numbers.LIMIT * numbers.EPS * bounds.allowing(f"s{n}", 0, off)
+        assert off <= allowed <= 2.0**20 * off, n
 
 
 def test_a_row_is_its_own() -> None:

@@ -605,3 +605,20 @@ def test_shipped_fits_come_out_as_published(name: str, values: int) -> None:
     code = (PAPER.parent / name / "workbook.py").read_text(encoding="utf-8")
     declared = [line for line in code.splitlines() if re.match(r"    \w+ = \w+\([^)]", line)]
     assert len(declared) <= {"gum_h3": 10, "misra1a": 6}[name]
+
+
+def test_a_step_that_leaves_the_domain_of_the_model_is_too_long(tmp_path: Path) -> None:
+    """It was a TypeError: the sum of squares there is no real number."""
+    method = (
+        "from sympy import log\nfrom loopsheet import Method, fit, measured, unknown\n\n\n"
+        "class Growth(Method, rows='points'):\n    'A growth.'\n\n"
+        "    x = measured('1', 'abscissa', positive=True)\n    y = measured('1', 'ordinate')\n"
+        "    a, b = unknown('a', start=0.2), unknown('b', start=3)\n    f = fit(y, a * log(1 + b * x))\n"
+    )
+    at = (0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    off = (0.01, -0.02, 0.01, 0.02, -0.01, -0.02, 0.02, -0.01)
+    rows = "".join(f"{x},{2 * math.log(1 + 1.5 * x) + e:.4f}\n" for x, e in zip(at, off, strict=True))
+    write(tmp_path, method, f"x [1],y [1]\n{rows}")
+    values = Study(tmp_path).computed.values
+    assert values.scalar("a") == pytest.approx(2, rel=0.02)
+    assert values.scalar("b") == pytest.approx(1.5, rel=0.05)

@@ -609,24 +609,36 @@ class Pooled(Method, source="own", rows="readings", headline="s_w"):
 READINGS = "reading,specimen,x [mm]\n1,A1,9.000\n2,B7,2.010\n3,B7,2.026\n4,C3,2.050\n5,C3,2.062\n"
 
 
+IN_LINES = """N = let(count(x), "all readings")
+    G = let(count(m), "all specimens")
+    SS = let(sum((many - 1) * s**2), "squares", "mm^2")
+    s_w = let(sqrt(SS / (N - G)), "pooled scatter", "mm")
+"""
+
+
 @pytest.mark.parametrize(
-    ("dof", "mixed"),
-    [("count(x) - count(m)", True), ("sum(many - 1)", False)],
+    ("lines", "told"),
+    [
+        (POOLED.replace("DOF", "count(x) - count(m)"), "s_w"),
+        (POOLED.replace("DOF", "sum(many - 1)"), ""),
+        (re.sub(r"s_w = .*\n", IN_LINES, POOLED), "s_w"),
+        # What is taken over all, and rests on no group, is beside it.
+        (POOLED.replace("DOF", "sum(many - 1)") + '    x_m = let(mean(x), "mean", "mm")\n', ""),
+    ],
 )
-def test_a_sum_over_groups_beside_a_count_of_the_rows_of_others_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], dof: str, mixed: bool
+def test_sums_over_groups_beside_sums_over_the_rows_of_others_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, told: str
 ) -> None:
-    """s_w was 0.0082 mm for 0.0100, by 5 readings less 2 specimens, and green as s[A1] was expected."""
-    (tmp_path / "workbook.py").write_text(POOLED.replace("DOF", dof), encoding="utf-8")
+    """s_w was 0.0082 mm for 0.0100, by 5 readings less 2 specimens, and green."""
+    (tmp_path / "workbook.py").write_text(lines, encoding="utf-8")
     (tmp_path / "measurements.csv").write_text(READINGS, encoding="utf-8")
     toml = (
         'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n[expected]\n"s[A1]" = "one"\n'
     )
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert main(["check", str(tmp_path)]) == mixed
-    said = "finding: s_w is over 2 of 3 specimens and counts rows of the others"
-    assert (said in capsys.readouterr().out) == mixed
-    values = Study(tmp_path).computed.values
-    assert (values.scalar("s_w") == pytest.approx(1e-5, rel=1e-12)) != mixed
-    (tmp_path / "report.toml").write_text(toml + 's_w = "as it was done before"\n', encoding="utf-8")
     assert main(["check", str(tmp_path)]) == 0
+    said = "warning: s_w rests on sums that leave out some specimens, and on others over readings of these"
+    out = capsys.readouterr().out
+    assert (said in out, "leave out some" in out) == (bool(told), bool(told))
+    values = Study(tmp_path).computed.values
+    assert (values.scalar("s_w") == pytest.approx(1e-5, rel=1e-12)) != bool(told)

@@ -27,7 +27,7 @@ def test_of_errors_that_are_tied_chance_is_asked_with_what_they_have_in_common(
     assert checks(tmp_path)["squares chi2_eiv"].message.endswith("which is what chance makes")
     text = " ".join(html.render(computed(tmp_path), {}).split())
     assert "Some errors are shared or correlated" in text
-    assert "the probability counts it" in text
+    assert "the probability is that of the sum of squares with what these errors" in text
     assert "describes these tests within" in text
     (warning,) = told(write(tmp_path, SOUND, stated(0.2) + more))
     said = r"warning: chi2_eiv = [\d.]+, [\d.]+ with what errors have in common, on 4 degrees of freedom; "
@@ -45,5 +45,26 @@ def test_an_error_of_each_test_alone_counts_as_its_own(tmp_path: Path) -> None:
     of_fit = computed(write(tmp_path, SOUND, own)).values.scalar("chi2_eiv")
     assert found.uncertain().misfits["chi2_eiv"].chi2 == pytest.approx(of_fit, rel=2e-3)
     assert abs(found.values.scalar("chi2_eiv") / of_fit - 1) > 0.2
-    without = found.uncertain().misfits["chi2_eiv"]
-    assert (without.dof, without.is_stated) == (4, True)
+    assert found.uncertain().misfits["chi2_eiv"].dof == 4
+
+
+def test_beside_a_shared_error_that_hides_all_others_nothing_is_told(tmp_path: Path) -> None:
+    """It was a sum on one degree of freedom, much too small: honest tests were told that they overstate."""
+    for u, skipped in ((1e2, False), (1e5, True)):
+        shared = f'[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = {u:g} um"\n'
+        write(tmp_path, SOUND, stated() + shared)
+        found = checks(tmp_path)["squares chi2_eiv"]
+        assert (found.skipped, found.passed) == (skipped, True)
+        assert skipped or found.message.endswith("which is what chance makes")
+
+
+def test_uncertainties_that_are_themselves_known_from_few_readings_count(tmp_path: Path) -> None:
+    own = stated(0.3).replace('x_p = "u = 0.06 um"', 'x_p = "u = 0.06 um, dof = 3"')
+    assert own != stated(0.3)
+    sure, unsure = (
+        checks(write(tmp_path, SOUND, each + TIED["correlated"]))["squares chi2_eiv"].message
+        for each in (stated(0.3), own)
+    )
+    assert "the probability of so much" in sure
+    assert "on 4 degrees of freedom by a u with" in unsure
+    assert unsure.endswith("which is what chance makes")

@@ -428,28 +428,6 @@ class Values:
         return [f"{(root - float(size.zero)) / float(size.scale):.6g}{behind(size.text)}" for root in roots]
 
 
-def counts_left_out(values: Values, name: str) -> bool:
-    """Whether a cell rests on sums over groups that leave one out, and on others over rows of that.
-
-    Such a number is of no set of rows: readings of a specimen whose scatter has no value are counted, and it
-    is not. `values`: without a batch.
-    """
-    sheet, layouts = values.sheet, values.layouts
-    kept: dict[str, list[Mask]] = {}
-    for column in (sheet[name], *sheet.ancestors(sheet[name])):
-        if column.axis is None:
-            summed = [each for each in precedents(sheet, layouts, column) if each.over is not None]
-            for over, mask in rows_kept(summed, layouts, values.status).items():
-                kept.setdefault(over, []).append(mask)
-    for axis in sheet.axes:
-        if isinstance(axis, GroupAxis) and {axis.name, axis.members.of.name} <= {*kept}:
-            rows = axis.members.of.name
-            group = layouts[rows].rows[axis.index_name]
-            if np.any(np.logical_or.reduce(kept[rows]) & ~np.logical_and.reduce(kept[axis.name])[group]):
-                return True
-    return False
-
-
 def other_rows(here: Values, there: Values) -> dict[str, Mask]:
     """The columns whose sums run over other rows than elsewhere: what they estimate is then another quantity.
 

@@ -14,7 +14,7 @@ from ..cells.values import Cell
 from ..messages.errors import suggest
 from ..result import verdict_words as words
 from ..result.agreement import Agreement
-from ..result.chi_square import RARE, SIGNIFICANT, head, independent, largest, tail, tied
+from ..result.chi_square import RARE, SIGNIFICANT, asked_of_chance, head, largest, tail, tied
 from ..result.conformity import decision, undecided
 from ..result.numbers import probability, rounded
 from ..result.statements import statements
@@ -111,14 +111,14 @@ class Said:
 
     def _followed(self, kind: str, what: str, p: float | None) -> tree.Inlines:
         text = self._probable(p)
-        # A page has the sum of squares of the fit, and no other.
+        # A page computes the sum of squares of the fit again, and no other.
         return (tree.Count(text, kind, what),) if text and not tied(self.report) else text
 
-    def _squares(self, how: Callable[[float, int], float], what: str) -> float | None:
+    def _squares(self, how: Callable[[float, int, float], float], what: str) -> float | None:
         """How likely such a sum of squares is; None without one, and if nothing or no chance is left over."""
         declared = {squares.name: squares for squares in self.report.workbook.squares}
         squares = declared[_known("sum of squares", what, declared)]
-        known = independent(squares, self.report)
+        known = asked_of_chance(squares, self.report)
         return how(*known) if known else None
 
     def _farthest(self, name: str) -> tuple[str, float] | None:

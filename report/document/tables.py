@@ -16,7 +16,7 @@ from ..inputs.published import PublishedValue
 from ..messages.errors import listing, sentence_case
 from ..quantity import span
 from ..result import verdict_words as words
-from ..result.chi_square import freedom, independent, number, tail
+from ..result.chi_square import asked_of_chance, freedom, number, tail
 from ..result.conformity import accepted, conforming, risk
 from ..result.numbers import Numeral, decimals, probability, read, rounded, table_format
 from ..result.result import Comparison
@@ -144,7 +144,7 @@ class Tables:
         """How likely each sum of squares of the workbook is, if chance alone made it."""
 
         def likely(each: SquareSum) -> Inlines:
-            known = independent(each, self.report)
+            known = asked_of_chance(each, self.report)
             return self.rich(probability(tail(*known))) if known else ()
 
         def head(each: SquareSum) -> Head:

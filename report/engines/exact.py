@@ -524,9 +524,12 @@ class _Scope:
     def _taken(
         self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
     ) -> list[Any]:
-        """What is taken of several terms over rows; nothing of no rows."""
+        """What is taken of several terms over rows; nothing of no rows, no number where one is complex."""
         columns = zip(*(terms(row, *at) for row in rows), strict=True)
-        return [_TAKEN[word](column) for word, column in zip(words, columns, strict=False)]
+        return [
+            mpmath.nan if any(isinstance(each, mpmath.mpc) for each in column) else _TAKEN[word](column)
+            for word, column in zip(words, columns, strict=False)
+        ]
 
     def _numbers(self, numbers: list[Any]) -> Any:
         """What is read, row by row."""

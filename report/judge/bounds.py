@@ -92,8 +92,13 @@ class RoundingBounds(Mapping[str, Array]):
         """
         while True:
             draw = np.random.default_rng(seed).uniform
-            moves = {name: LIMIT * EPS * room * draw(-1, 1, room.size) for name, room in self.room.items()}
-            there = self._at({name: own + moves[name] for name, own in self.value.items()})
+            moved = {}
+            for name, own in self.value.items():
+                share = draw(-1, 1, own.size)
+                if self.sheet[name].nonnegative:
+                    share = np.where(own == 0, np.abs(share), share)  # below there is no root
+                moved[name] = own + LIMIT * EPS * self.room[name] * share
+            there = self._at(moved)
             news = {name: (room == 0) & np.isfinite(there[name]) for name, room in self.room.items()}
             if not any(np.any(new & (there[name] > 0)) for name, new in news.items()):
                 return there

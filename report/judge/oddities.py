@@ -16,15 +16,15 @@ import numpy as np
 from ..axis import GroupAxis
 from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
-from ..cells.values import Cell, Status, counts_left_out
+from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
 from ..messages.errors import listing
 from ..quantity import behind
-from ..result.chi_square import RARE, freedom, head, independent, tail, tied, ties
+from ..result.chi_square import RARE, asked_of_chance, freedom, head, tail, tied, ties
 from ..result.numbers import probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
-from . import readings, taken
+from . import mixed_rows, readings, taken
 from .claims import CLAIM
 from .suspects import outliers, suspected
 
@@ -78,6 +78,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
         WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
         TWICE: [table.name or table.row for table in inputs.tables],
         readings.SCATTERS: readings.names(sheet, inputs),
+        mixed_rows.MIXED: mixed_rows.names(sheet),
         taken.TAKEN: list(inputs.taken),
         CONSTANTS: [cell for cell, _ in _adjusted(sheet, inputs)],
         CLAIM: [claim.label for claim in workbook.claims],
@@ -166,6 +167,7 @@ class _Oddities:
         yield from map(self.of_taken, _taken(self.inputs))
         yield from map(self.of_twice, self.inputs.tables)
         yield from readings.checks(self.report)
+        yield from mixed_rows.checks(self.report)
         yield from taken.checks(self.inputs)
         yield from (self.of_constants(*each) for each in _adjusted(self.sheet, self.inputs))
         yield from self.of_expectations()
@@ -246,10 +248,8 @@ class _Oddities:
             for row, cell in enumerate(self.values.cells(name)):
                 for rows, size, axis in self.values.left_out(name, row) if cell.value is not None else ():
                     over = f"over {rows} of {size} {self.sheet.rows_of(axis)}"
-                    mixed = counts_left_out(self.values, name)
-                    expected = (self.reason if mixed else self.follows)(cell, f"is {over}")
-                    over += " and counts rows of the others" * mixed
-                    (foreseen if expected else found).setdefault(over, []).extend(self.told_of(cell))
+                    which = foreseen if self.follows(cell, f"is {over}") else found
+                    which.setdefault(over, []).extend(self.told_of(cell))
         told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
         said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
         if found:
@@ -368,12 +368,13 @@ class _Oddities:
         if cell.value is None or dof < 1:
             said = "no value" if cell.value is None else f"nothing left over of {squares.axis}"
             return Check(SQUARES, name, True, f"{name}: {said}", self.inputs.place)
-        known, together = independent(squares, self.report), tied(self.report)
+        known, together = asked_of_chance(squares, self.report), tied(self.report)
         if known is None:
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
         found = f", {rounded(known[0], 2).plain} with what errors have in common," * together
         found = f"{name} = {self.report.text(cell)}{found} on {known[1]} degrees of freedom"
+        found += f" by a u with {known[2]:.0f}" * math.isfinite(known[2])
         large, small = tail(*known), head(*known)
         # What is left without some rows is a sum by the weights of the fit.
         instead = self.without(squares) if large < RARE and squares.deviation and not together else ""

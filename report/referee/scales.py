@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -71,24 +70,44 @@ def _shortened(printed: Sequence[Printed]) -> Iterator[tuple[Change, list[Printe
     would = "rounded" if was == "truncated" else "truncated"
     yield Change("truncated", "", (), "", was, would), [replace(each, mode=would) for each in printed]
     # Of a number with a stated uncertainty no digit says how well it is known.
-    texts = [without_zeros(each.text) if each.stated is None else each.text for each in printed]
-    prints = [replace(each, text=text) for each, text in zip(printed, texts, strict=True)]
-    pairs = ((each.text, text) for each, text in zip(printed, texts, strict=True))
-    if first := next((pair for pair in pairs if pair[0] != pair[1]), None):
-        yield Change("zeros", "", (), "", *first), prints
+    # Of a number with a stated uncertainty no digit says how well it is known.
+    own = [n for n, each in enumerate(printed) if each.stated is None]
+    for texts in without_zeros([printed[n].text for n in own]):
+        prints = list(printed)
+        for n, text in zip(own, texts, strict=True):
+            prints[n] = replace(printed[n], text=text)
+        was, would = next((a.text, b.text) for a, b in zip(printed, prints, strict=True) if a != b)
+        yield Change("zeros", "", (), "", was, would), prints
 
 
-def without_zeros(text: str) -> str:
-    """An integer without the zeros at its end, which only say how large it is: of two digits at least.
+def without_zeros(texts: Sequence[str]) -> list[list[str]]:
+    """Numbers of a column without zeros that only say how large they are: to one place, or to as many digits.
 
-    >>> [without_zeros(text) for text in ("12300", "-9000", "50", "9.800", "1234")]
-    ['1.23e4', '-9.0e3', '50', '9.800', '1234']
+    At least two digits stay.
+
+    >>> without_zeros(["12300", "-500"]), without_zeros(["12300", "456"]), without_zeros(["12000", "12345"])
+    ([['1.230e4', '-5.0e2'], ['1.23e4', '-500']], [['1.23e4', '456']], [])
     """
-    whole = re.fullmatch(r"([+-]?[1-9])(\d+?)(0+)", text)
-    if whole is None:
+    bare = [text.lstrip("+-") for text in texts]
+    zeros = [
+        min(len(each) - len(each.rstrip("0")), max(len(each) - 2, 0)) if each.isdigit() else 0
+        for each in bare
+    ]
+    digits = [len(each.partition("e")[0].replace(".", "").lstrip("0")) for each in bare]
+    most = max((own - zero for own, zero in zip(digits, zeros, strict=True)), default=0)
+    to_place = [min(zeros, default=0)] * len(texts)
+    to_digits = [min(zero, max(own - most, 0)) for own, zero in zip(digits, zeros, strict=True)]
+    ways = [list(map(_shorter, texts, cuts)) for cuts in (to_place, to_digits)]
+    return [way for n, way in enumerate(ways) if way != texts and way not in ways[:n]]
+
+
+def _shorter(text: str, zeros: int) -> str:
+    """An integer without so many of the zeros at its end."""
+    if not zeros:
         return text
-    first, more, zeros = whole.groups()
-    return f"{first}.{more}e{len(more) + len(zeros)}"
+    sign, digits = text[: -len(text.lstrip("+-"))], text.lstrip("+-")
+    kept = digits[:-zeros]
+    return f"{sign}{kept[0]}.{kept[1:]}e{len(digits) - 1}"
 
 
 _Way = tuple[Change, tuple[Fraction, ...]]

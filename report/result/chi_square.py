@@ -42,16 +42,17 @@ def freedom(squares: SquareSum, report: Report) -> int:
     return squares.freedom(report.values.rows_summed(squares.name, squares.axis))
 
 
-def independent(squares: SquareSum, report: Report) -> tuple[float, int] | None:
-    """A sum of squares of independent errors, and its degrees of freedom; None where there is none.
+def asked_of_chance(squares: SquareSum, report: Report) -> tuple[float, int, float] | None:
+    """What chance is asked of: a sum of squares, its degrees of freedom, and those of the uncertainties.
 
-    Where errors are shared or correlated it is not that of the fit, whose weights leave that out.
+    That is the sum of the fit, but where errors are shared or correlated: its weights leave that out, and the
+    sum is that with what they have in common. None where it is not known, or nothing is left over.
     """
     if tied(report):
         known = report.uncertain().misfits.get(squares.name)
-        return (known.chi2, known.dof) if known else None
+        return (known.chi2, known.dof, known.known_by) if known else None
     value, dof = report.values.scalar(squares.name), freedom(squares, report)
-    return (value, dof) if dof > 0 and value == value else None
+    return (value, dof, math.inf) if dof > 0 and value == value else None
 
 
 def number(squares: SquareSum, report: Report) -> int:

@@ -476,7 +476,9 @@ class Spread:
         cells = [(squares.residual, row) for row in rows]
         residuals, weights = (self.values.value[name][rows] for name in (squares.residual, squares.weight))
         moved = self.contributions(cells)
-        return self._misfit(residuals, self.covariance(cells), moved, squares.fitted, weights**-0.5)
+        found = self._misfit(residuals, self.covariance(cells), moved, squares.fitted, weights**-0.5)
+        # Beside a shared error that is a million times as large the others are lost in rounding.
+        return found if found and found.dof == squares.freedom(len(rows)) else None
 
     def misfit_of_mean(self, name: str) -> Misfit | None:
         """The same of a column about its mean: stated is what makes its rows differ, all of it."""

@@ -243,7 +243,7 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
   if (why) return `Nothing was pasted: ${why}.`;
   const at = names.indexOf(""), numbers = at < 0 ? [] : rows.map((fields) => read(fields[at]));
-  const twice = numbers.find((text, n) => numbers.indexOf(text) !== n);
+  const twice = numbers.find((text, n) => text && numbers.indexOf(text) !== n);
   if (twice !== undefined) return `Nothing was pasted: ${called} ${twice} stands twice in it.`;
   let rowsLost = 0;
   for (const [down, fields] of rows.entries()) {

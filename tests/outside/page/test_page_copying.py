@@ -139,6 +139,12 @@ def test_a_column_with_its_unit_behind_each_number_is_pasted(page: Live) -> None
     assert page.cell("x_p", "2").status == "#INPUT!"
 
 
+def test_rows_without_a_number_have_no_place(page: Live) -> None:
+    page.input("v", 1).click()
+    page.paste("test\tv\n1\t2.3\n2\t2.9\n\t\n3\t3.5\n\t\n4\t4.1\n")
+    assert page.text("live-note") == "Pasted, but 2 rows had no place."
+
+
 def test_powers_and_signs_are_copied_as_programs_read_them(page: Live) -> None:
     page.page.locator("#cell-C-1-2").click()
     page.press("Shift+ArrowDown", "Control+c")
