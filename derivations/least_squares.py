@@ -72,7 +72,7 @@ Pair = tuple[Equation, sp.Expr]
 
 
 def _has_power_of(each: sp.Expr, model: sp.Expr) -> bool:
-    """Whether there is a number for positive ones alone."""
+    """Whether the model may have a value only where this is positive."""
     powers = (power.base for power in model.atoms(sp.Pow) if not power.exp.is_integer)
     return any(of.has(each) for of in (*powers, *model.atoms(sp.log)))
 
@@ -174,7 +174,7 @@ class LeastSquares:
         self.weight: sp.Expr = sp.Integer(1)
         tilts = self.tilts
         bent = any(tilt.has(*feet.values()) for tilt in tilts.values())
-        if bent:  # nothing of what is proved hangs on what these are
+        if bent:  # as columns: what is proved holds of any slopes, and formulas are short
             self.tilts = {
                 each: self._column(f"B{n}", tilt, f"slope of the model by {each.base}", f"B_{{{n}%s}}")
                 for n, (each, tilt) in enumerate(tilts.items(), start=1)
@@ -367,10 +367,11 @@ class LeastSquares:
         now = (1 + _ROUNDING) * self.total(self.residual**2) + _NOTHING * self.total(self.observed**2)
         sums = [squares(part) for part in _PARTS[:-1]]
         if self.feet:  # too long for one formula of a worksheet
-            titles = [f"sum of squares with {part} of the step" for part in _PARTS]
-            pairs = enumerate(zip(sums, titles, strict=False), start=1)
+            shares = ["the whole", *(f"{part} of the" for part in _PARTS[1:-1])]
+            titles = [f"sum of squares after {share} step" for share in shares]
+            pairs = enumerate(zip(sums, titles, strict=True), start=1)
             sums = [self._helper(f"Q{n}", total, title, f"Q_{{{n}}}") for n, (total, title) in pairs]
-        ways = [(part, total <= now) for part, total in zip(_PARTS, sums, strict=False)]
+        ways = [(part, total <= now) for part, total in zip(_PARTS[:-1], sums, strict=True)]
         value = sp.Piecewise(*ways, (_PARTS[-1], True))
         return self._helper("part", value, "part of the step that is taken", r"\lambda")
 

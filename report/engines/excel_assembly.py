@@ -51,7 +51,7 @@ class _Room:
         return place
 
 
-@dataclass
+@dataclass(eq=False)
 class Assembly:
     """Blocks being put together: first all places, then all formulas."""
 

@@ -37,14 +37,15 @@ class Unreachable(Exception):
 
 
 class Bodies(NamedTuple):
-    """What is known of both bodies besides their masses, in SI; NaN is what is not."""
+    """What is known of both bodies besides their masses, in SI."""
 
     modulus: float | None = None
-    """Young's, if the stiffness shall be Hertz's; else it is the one with which the greatest approach (of a
-    law with an imprint: the imprint) is that of the drop."""
+    """Young's, for the stiffness of Hertz; None: that with which the greatest approach (of a law with an
+    imprint: the imprint) is that of the drop."""
     poisson: float = math.nan
+    """NaN where it is not known."""
     radius: float = math.nan
-    """The effective one."""
+    """The effective one; NaN where it is not known."""
 
 
 def card(code: ContactFormula, drops: Drops, drop: Drop, of: str, bodies: Bodies) -> Card:

@@ -92,8 +92,8 @@ def _filled(template: str, printed: Callable[[Expr], str], line: str, indent: st
     return text.rstrip("\n")
 
 
-_C99 = partial(_filled, "force.c.txt", ccode, "const double {} = {};", "   ")
-_PYTHON = partial(_filled, "force.py.txt", pycode, "{} = {}", "")
+_as_c99 = partial(_filled, "force.c.txt", ccode, "const double {} = {};", "   ")
+_as_python = partial(_filled, "force.py.txt", pycode, "{} = {}", "")
 
 
 def as_table(of: WrittenLaw) -> str:
@@ -123,7 +123,7 @@ class Language(NamedTuple):
 
 SOURCES = {
     "table": Language("the identified law, force over approach at one speed, as CSV", as_table),
-    "c": Language("the identified law as a function in C, for any speed", _C99, "/* ", " */"),
-    "python": Language("the identified law as a function in Python, for any speed", _PYTHON),
+    "c": Language("the identified law as a function in C, for any speed", _as_c99, "/* ", " */"),
+    "python": Language("the identified law as a function in Python, for any speed", _as_python),
 }
 """What prints the law itself, by the word for it."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..inputs.published import PublishedValue
-from ..result.numbers import finite
+from ..result.numbers import for_json
 from ..result.verdict import EXACT, NOT_CHECKABLE, NOT_FOUND, REACHABLE, UNREACHABLE, WITHIN, Verdict
 from .campaign import COVERAGE, Array, Campaign
 from .certificate import Certificate
@@ -124,7 +124,7 @@ class _Alone:
             if not mismatch <= 1:
                 # What is certain takes longest to find, and is asked for only where something is claimed.
                 bounds = self.certificate.bounds[n]
-                bound_low, bound_high = finite(float(bounds.low)), finite(float(bounds.high))
+                bound_low, bound_high = for_json(float(bounds.low)), for_json(float(bounds.high))
                 word = self._else(n, bounds.low, bounds.high)
         by = np.abs(self.slopes[n] * problem.box.start)
         free = [
@@ -134,7 +134,7 @@ class _Alone:
         ]
         seen = seen[np.isfinite(seen)]
         low, high = (None, None) if free or not seen.size else (float(seen.min()), float(seen.max()))
-        return Verdict(word, low, high, bound_low, bound_high, finite(mismatch))
+        return Verdict(word, low, high, bound_low, bound_high, for_json(mismatch))
 
     def _else(self, n: int, bound_low: Array, bound_high: Array) -> str:
         """The word for a value that nothing was found for."""
@@ -154,4 +154,4 @@ class _Alone:
         moving = zip(campaign.spread.sources, own.tolist(), strict=False)
         if not any(source.said for source, moved in moving if moved):
             return None
-        return finite(campaign.spread.budget(name, row).u)
+        return for_json(campaign.spread.budget(name, row).u)

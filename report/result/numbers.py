@@ -306,7 +306,7 @@ def stated(value: float, u: float, most: int = MOST) -> tuple[Numeral, Numeral]:
         return _written(_to(value, place), place, power), _written(told, place, power)
 
 
-def finite(value: float | None) -> float | None:
+def for_json(value: float | None) -> float | None:
     """A number as JSON can hold it, which has none that are not finite."""
     return float(value) if value is not None and math.isfinite(value) else None
 

@@ -29,7 +29,7 @@ CALLED = {
 POSSIBLE = {
     "misprint": "possible misprint",
     "truncated": "possible truncation",
-    "zeros": "possible zeros",
+    "zeros": "possibly no digits",
     "label": "possible confusion",
     "order": "possible disorder",
     "unit": "possible unit",

@@ -12,7 +12,7 @@ from ..distribution import Shape
 from ..quantity import behind
 from ..result import uncertain
 from ..result.conformity import lines
-from ..result.numbers import decimals, finite, rounded, stated
+from ..result.numbers import decimals, for_json, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
 from .blocks import Block, TextTable, printers
@@ -80,14 +80,14 @@ def _as_json(report: Report, budget: uncertain.Budget, besides: Besides = NOTHIN
             "schema": 1,
             "cell": budget.cell,
             "unit": report.sheet[budget.name].unit,
-            "value": finite(budget.value),
-            "u": finite(budget.u),
-            "dof": finite(budget.dof),
+            "value": for_json(budget.value),
+            "u": for_json(budget.u),
+            "dof": for_json(budget.dof),
             "level": budget.level,
-            "k": finite(budget.factor),
+            "k": for_json(budget.factor),
             "k_from": budget.because,
-            "U": finite(budget.expanded),
-            "second_order_share": finite(budget.second / budget.u**2) if budget.u else 0.0,
+            "U": for_json(budget.expanded),
+            "second_order_share": for_json(budget.second / budget.u**2) if budget.u else 0.0,
             "second_order_unknown": budget.unlooked or None,
             "sources": [_source(each) for each in budget.contributions],
             "summed": {
@@ -119,10 +119,10 @@ def _source(each: uncertain.Contribution) -> dict[str, object]:
         "unit": each.unit,
         "u": source.u,
         "distribution": source.shape.value,
-        "dof": finite(source.dof),
-        "sensitivity": finite(each.sensitivity),
-        "contribution": finite(each.u),
-        "share": finite(each.share),
+        "dof": for_json(source.dof),
+        "sensitivity": for_json(each.sensitivity),
+        "contribution": for_json(each.u),
+        "share": for_json(each.share),
     }
 
 
@@ -282,33 +282,33 @@ def _drawn(drawn: uncertain.Distributed) -> dict[str, object]:
     return {
         "draws": drawn.number,
         "without_value": drawn.lost,
-        "median": finite(drawn.median),
-        "mean": finite(drawn.mean),
-        "u": finite(drawn.u),
-        "interval": list(map(finite, drawn.symmetric)),
-        "shortest": list(map(finite, drawn.shortest)),
-        "tail_index": finite(drawn.tail),
+        "median": for_json(drawn.median),
+        "mean": for_json(drawn.mean),
+        "u": for_json(drawn.u),
+        "interval": list(map(for_json, drawn.symmetric)),
+        "shortest": list(map(for_json, drawn.shortest)),
+        "tail_index": for_json(drawn.tail),
         "stable": drawn.stable,
         "tolerance": drawn.tolerance,
-        "differences": list(map(finite, drawn.differences)),
+        "differences": list(map(for_json, drawn.differences)),
         "validates": drawn.validates,
     }
 
 
 def _conformity(found: uncertain.Conformity) -> dict[str, object]:
     return {
-        "limits": list(map(finite, found.limits.ends)),
+        "limits": list(map(for_json, found.limits.ends)),
         "level": found.limits.guard.level,
-        "guard": finite(found.guard),
-        "acceptance": list(map(finite, found.acceptance)),
+        "guard": for_json(found.guard),
+        "acceptance": list(map(for_json, found.acceptance)),
         "decision": found.decision.value,
         "because": found.because,
         "distribution": found.by.shape.value,
-        "probability": finite(found.probability),
-        "below": finite(found.below),
-        "above": finite(found.above),
-        "consumer_risk": finite(found.consumer_risk),
-        "producer_risk": finite(found.producer_risk),
+        "probability": for_json(found.probability),
+        "below": for_json(found.below),
+        "above": for_json(found.above),
+        "consumer_risk": for_json(found.consumer_risk),
+        "producer_risk": for_json(found.producer_risk),
     }
 
 

@@ -10,7 +10,7 @@ from msgspec import to_builtins
 
 from ..result import card_words as words
 from ..result.card import Behaviour, Card, CardRow, Prescribed
-from ..result.numbers import finite
+from ..result.numbers import for_json
 from .blocks import Block, Snippet, TextTable, printers
 from .checks import lines
 from .json import oddities
@@ -40,7 +40,7 @@ def _as_json(card: Card) -> str:
 
 def _named(values: Behaviour | CardRow | Prescribed) -> dict[str, object]:
     told = values._asdict().items()
-    return {name: value if isinstance(value, str) else finite(value) for name, value in told}
+    return {name: value if isinstance(value, str) else for_json(value) for name, value in told}
 
 
 FORMATS: Mapping[str, Callable[[Card], str]] = {**printers(_blocks), "json": _as_json}

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ..quantity import behind
 from ..result.design import Planned
-from ..result.numbers import finite, rounded
+from ..result.numbers import for_json, rounded
 from .blocks import Block, TextTable, printers
 from .budget import notes, percent, sentence
 
@@ -118,10 +118,10 @@ def _as_json(plan: Planned) -> str:
         {
             "test": test,
             **{
-                name: {"value": finite(float(report.values.value[name][row])), "u": finite(float(u[row]))}
+                name: {"value": for_json(float(report.values.value[name][row])), "u": for_json(float(u[row]))}
                 for name, u in plan.u.items()
             },
-            "share": finite(plan.of_tests[test]),
+            "share": for_json(plan.of_tests[test]),
         }
         for row, test in enumerate(report.inputs.only.tests)
     ]
@@ -129,21 +129,21 @@ def _as_json(plan: Planned) -> str:
         "schema": 1,
         "cell": budget.cell,
         "unit": report.sheet[budget.name].unit,
-        "value": finite(budget.value),
-        "u": finite(budget.u),
-        "k": finite(budget.factor),
-        "U": finite(budget.expanded),
-        "level": finite(budget.level),
-        "second_order_share": finite(budget.second / budget.u**2) if budget.u else 0.0,
-        "curve": {name: finite(plan.followed.values.scalar(name)) for name in plan.curve},
+        "value": for_json(budget.value),
+        "u": for_json(budget.u),
+        "k": for_json(budget.factor),
+        "U": for_json(budget.expanded),
+        "level": for_json(budget.level),
+        "second_order_share": for_json(budget.second / budget.u**2) if budget.u else 0.0,
+        "curve": {name: for_json(plan.followed.values.scalar(name)) for name in plan.curve},
         "tests": tests,
-        "shares": {name: finite(share) for name, share in plan.shares.items()},
+        "shares": {name: for_json(share) for name, share in plan.shares.items()},
         "warnings": _warnings(plan),
         "best": best
         and {
             "between": best.ends,
-            "u": finite(best.u),
-            "u_equal_steps": finite(best.u_equal),
+            "u": for_json(best.u),
+            "u_equal_steps": for_json(best.u_equal),
             "tried": best.tried,
         },
         "needed": needed
@@ -151,8 +151,8 @@ def _as_json(plan: Planned) -> str:
             "of": needed.of,
             "unit": report.sheet[needed.of].unit,
             "wanted": needed.wanted,
-            "u": finite(needed.u),
-            "others": finite(needed.others),
+            "u": for_json(needed.u),
+            "others": for_json(needed.others),
             "out_of_reach": needed.is_out_of_reach,
         },
     }

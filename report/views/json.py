@@ -22,7 +22,7 @@ from ..machine.staging import put
 from ..messages.diagnostics import Check
 from ..result import verdict_data
 from ..result.conformity import accepted
-from ..result.numbers import finite
+from ..result.numbers import for_json
 from ..result.result import Comparison, Report
 from ..result.uncertain import Budget, Conformity, ErrorSource
 from ..result.verdict import Verdict
@@ -83,13 +83,13 @@ def _expanded(budget: Budget) -> form.Expanded:
 
 
 def _decided(report: Report, found: Conformity) -> form.Conformity:
-    low, high = map(finite, found.acceptance)
+    low, high = map(for_json, found.acceptance)
     return form.Conformity(
         cell=found.budget.cell,
         limits=str(found.limits),
         acceptance=(low, high),
         accepted=accepted(report, found) if found.guard > 0 else "",
-        probability=finite(found.probability),
+        probability=for_json(found.probability),
         decision=found.decision.value,
     )
 
@@ -187,8 +187,8 @@ def _fifteen(u: float) -> float:
 def _error(source: ErrorSource) -> form.Source:
     """A source, by its name where it was stated."""
     report, name = source.origin or ("", source.name)
-    dof, law = finite(source.dof), source.law
-    ends = (finite(law.low), finite(law.high)) if isinstance(law, TruncatedNormal) else UNSET
+    dof, law = for_json(source.dof), source.law
+    ends = (for_json(law.low), for_json(law.high)) if isinstance(law, TruncatedNormal) else UNSET
     return form.Source(
         name=name, report=report, distribution=source.shape.value, ends=ends, dof=dof, sample=source.sample
     )
