@@ -172,18 +172,22 @@ class LeastSquares:
         self._found: dict[str, FitQuantity] = {}
         self.claims: list[Derivation] = []
         self.weight: sp.Expr = sp.Integer(1)
-        tilts = self.tilts
+        tilts, fitted = self.tilts, model
+        self.there, self.tangent = self.true, model
         bent = any(tilt.has(*feet.values()) for tilt in tilts.values())
-        if bent:  # as columns: what is proved holds of any slopes, and formulas are short
+        if bent:
+
+            def tangent(there: sp.Expr, tilts: Mapping[sp.Indexed, sp.Expr]) -> sp.Expr:
+                return there + sp.Add(*(tilt * (each - feet[each]) for each, tilt in tilts.items()))
+
+            self.tangent = tangent(self.true, tilts)
+            # As columns: what is proved holds of any model and any slopes, and formulas are short.
+            self.there = self._column("model", self.true, "model at the nearest point", "m%s")
             self.tilts = {
                 each: self._column(f"B{n}", tilt, f"slope of the model by {each.base}", f"B_{{{n}%s}}")
                 for n, (each, tilt) in enumerate(tilts.items(), start=1)
             }
-
-        def tangent(tilts: Mapping[sp.Indexed, sp.Expr]) -> sp.Expr:
-            return self.true + sp.Add(*(tilt * (each - feet[each]) for each, tilt in tilts.items()))
-
-        self.tangent = tangent(tilts) if bent else model
+            fitted = tangent(self.there, self.tilts)
         if u is not None:
 
             def spread(tilts: Mapping[sp.Indexed, sp.Expr]) -> sp.Expr:
@@ -199,7 +203,6 @@ class LeastSquares:
             self.weight = self._helper(
                 "w", by_columns, "weight of a row", "w%s", rows=True, positive=True, needs=needs
             )
-        fitted = tangent(self.tilts) if bent else model
         self.fitted = self._result("fitted", fitted, f"{what}, fitted", rows=True)
         self.residual = self._result("residual", observed - self.fitted, f"{what}, residual", rows=True)
         self._orthogonal()
@@ -451,7 +454,7 @@ class LeastSquares:
         claim = self._said(
             next(self.own), (sp.diff(self._squares, parameter), -2 * slope), title, because=shown
         )
-        rows = (self.columns[0][m], self.residual, self.fitted, *(self.weight,) * bool(self.feet))
+        rows = (self.columns[0][m], self.residual, self.fitted, *(self.weight, self.there) * bool(self.feet))
         own = (*self._definitions(*rows), *self._nearest)
         step_of = _step(claim, ((said, slope), *own), "Differentiate the sum of squares.")
         self.claims.append(Derivation((step_of,)))
@@ -460,7 +463,7 @@ class LeastSquares:
     def _nearest(self) -> Iterator[Pair]:
         """Where the true values of a row are, solved for what was observed of them."""
         for each, foot in self.feet.items():
-            off = self.others[each] ** 2 * self.tilts[each] * (self.observed - self.true) / self.u**2
+            off = self.others[each] ** 2 * self.tilts[each] * (self.observed - self.there) / self.u**2
             because = "half the slope of the sum of squares by it vanishes where that is least"
             title = f"{each.base} of the nearest point of the model"
             yield self._said("", (each, foot - off), title, Kind.DEFINITION, because), each.base

@@ -385,8 +385,11 @@ def words_beside(report: Report) -> dict[str, tuple[str, ...]]:
     return {axis: report.inputs.on(axis).remarks for axis in given}
 
 
-def book(report: Report) -> tuple[Grid, bytes]:
-    """The sheet as a workbook with live formulas: where its cells are, and the file."""
+def book(report: Report, charts: bool = True) -> tuple[Grid, bytes]:
+    """The sheet as a workbook with live formulas: where its cells are, and the file.
+
+    `charts`: whether it has any.
+    """
     refuse_too_many_rows(report.values.layouts)
     from .engines import excel_grid
     from .engines.excel_values import NotPrintable
@@ -395,7 +398,7 @@ def book(report: Report) -> tuple[Grid, bytes]:
     units = {name: how.unit for name, how in report.shown.items()}
     try:
         first, values = report.workbook.headline, report.marks.values
-        words, drawn = words_beside(report), for_a_grid(report)
+        words, drawn = words_beside(report), for_a_grid(report) if charts else None
         limited = [limits.cell[0] for limits in report.inputs.limits]
         grid = excel_grid.grid(report.sheet, values, units, first, drawn, words, limited)
     except NotPrintable as error:
