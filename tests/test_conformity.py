@@ -294,16 +294,16 @@ def test_two_rectangular_sources_make_a_trapezoid(
 
 
 def test_what_is_given_and_has_limits_keeps_its_check_on_the_first_worksheet(tmp_path: Path) -> None:
-    """A result has its statement in that column; there a given cell tells what is wrong with it."""
+    """A result has its statement beside; a given cell tells there how it was checked."""
     campaign = of_two(tmp_path, "9.90, u = 0.30", "0.00, u = 0.05", "<= 13")
     toml = tmp_path / "report.toml"
     both = toml.read_text(encoding="utf-8").replace("[limits]\n", '[limits]\nx_1 = "<= 12"\n')
     toml.write_text(both, encoding="utf-8")
     assert main(["build", campaign, "--to", "xlsx"]) == 0
     book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")
-    beside = {str(row[0].value): str(row[7].value) for row in book["report"].iter_rows(max_col=8)}
-    assert beside["x_1"].startswith("=IF(OR(NOT(ISNUMBER(")
-    assert beside["y"].startswith("=uncertainty!$B$")
+    beside = {str(row[0].value): row[6:] for row in book["report"].iter_rows(max_col=8)}
+    assert str(beside["x_1"][1].value).startswith("=IF(OR(NOT(ISNUMBER(")
+    assert str(beside["y"][0].value).startswith("=uncertainty!$B$")
 
 
 def test_beside_a_normal_source_nothing_is_certain(

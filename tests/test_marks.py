@@ -188,7 +188,7 @@ def test_marks_in_the_workbook(slipped: Path) -> None:
     book = openpyxl.load_workbook(io.BytesIO(content))
     shown = openpyxl.load_workbook(io.BytesIO(content), data_only=True)
     rows = {row[0].value: row for row in shown["report"].iter_rows() if row[0].value}
-    assert rows["alpha_mean"][6].value == "3 of 3 pairs; 2 of 3 pairs outside (4)"
+    assert rows["alpha_mean"][7].value == "3 of 3 pairs; 2 of 3 pairs outside (4)"
     assert rows["alpha_lin_margin"][1].value < 0 < rows["alpha_mean_margin"][1].value
     (column,) = (
         cell.column

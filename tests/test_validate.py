@@ -56,11 +56,11 @@ def test_a_record_says_what_was_run_and_that_it_passes(
 def test_what_is_not_checked_says_why(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A sum of squares where errors are shared waits for no program."""
+    """A sum of squares that a shared error hides waits for no program."""
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(kept, "nothing_kept", nullcontext)  # the algebra of the paper is a build of its own
     steel = copytree(PAPER, tmp_path / "steel", ignore=lambda *_: ["out"])
-    shared = '[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = 0.1 um"\n\n[published]'
+    shared = '[uncertainty.shared.datum]\nof = "x_p"\nstated = "u = 1 m"\n\n[published]'
     edit(steel / "report.toml", "[published]", shared)
     (steel / "published.csv").write_text("source,cell,index,value,unit\nhere,alpha_mean,,1.303,1\n")
     text = (steel / "report.toml").read_text()
