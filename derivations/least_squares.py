@@ -71,12 +71,6 @@ Pair = tuple[Equation, sp.Expr]
 """A premise, and what it is solved for."""
 
 
-def _has_power_of(each: sp.Expr, model: sp.Expr) -> bool:
-    """Whether the model may have a value only where this is positive."""
-    powers = (power.base for power in model.atoms(sp.Pow) if not power.exp.is_integer)
-    return any(of.has(each) for of in (*powers, *model.atoms(sp.log)))
-
-
 def _step(claim: Equation, pairs: Iterable[Pair], says: str) -> Step:
     premises, unknowns = zip(*pairs, strict=True)
     return Step(claim, premises, unknowns, says)
@@ -140,14 +134,7 @@ class LeastSquares:
         self.parameters, self.words = tuple(parameters), tuple(parameters.values())
         self.index, self.size, self.number, self.own, self.rows = index, size, number, own, rows
         self.count = len(self.parameters)
-        feet = {
-            each: self._cell(
-                f"{called}_at_{each.base}",
-                rows=True,
-                positive=bool(each.is_positive) and _has_power_of(each, model),
-            )
-            for each in others
-        }
+        feet = {each: self._cell(f"{called}_at_{each.base}", rows=True) for each in others}
         self.feet, self.others, self.true = feet, others, model.xreplace(feet)
         self.u: sp.Expr = sp.Integer(1) if u is None else u
         self.tilts = {each: sp.diff(self.true, foot) for each, foot in feet.items()}
