@@ -70,7 +70,6 @@ def _shortened(printed: Sequence[Printed]) -> Iterator[tuple[Change, list[Printe
     would = "rounded" if was == "truncated" else "truncated"
     yield Change("truncated", "", (), "", was, would), [replace(each, mode=would) for each in printed]
     # Of a number with a stated uncertainty no digit says how well it is known.
-    # Of a number with a stated uncertainty no digit says how well it is known.
     own = [n for n, each in enumerate(printed) if each.stated is None]
     for texts in without_zeros([printed[n].text for n in own]):
         prints = list(printed)

@@ -51,8 +51,8 @@ def sheet(given: frozenset[str]) -> Sheet:
     fitted = _of_tests(_ALONE, *names[names.index("u_v") :])
     told = {equation.label for equation in LEDGER.equations()}
     typed = soft_impact.sheet(_ALONE | {"ball_diameter"})
-    measured = typed["v"], typed["e"], typed["x_p"]  # with what no drop test has
-    for column in (*measured, *_of_tests(_ALONE, "beta"), *_masses(given), *fitted):
+    given_there = (typed[name] for name in ("v", "e", "x_p", "beta"))  # with what no drop test has
+    for column in (*given_there, *_masses(given), *fitted):
         if column.equation is None or column.equation.label in told:
             laid.add(column)
     if "ball_diameter" not in laid.columns:
