@@ -155,7 +155,7 @@ def test_much_that_is_said_of_a_result_is_broken_into_lines(
 def test_no_heading_stands_alone_at_the_foot_of_a_page(
     article: str, tmp_path: Path, require: Callable[..., str]
 ) -> None:
-    """Wherever it falls, its first claim follows."""
+    """Wherever it falls, its first claim or the first rows of its table follow."""
     require("pdflatex")
     require("pdftotext")
     preamble, body = article.split(r"\begin{document}")
@@ -163,8 +163,11 @@ def test_no_heading_stands_alone_at_the_foot_of_a_page(
     first = re.match(r"(?s).*?\\end\{(align\*?|equation\*?|gather\*?)\}", rest)
     assert first is not None
     claim = re.sub(r"\\label{.*?}", "", first[0])
+    table = r"\begin{longtable}[l]{l}\caption*{What} \\ head\endfirsthead first row \\ second\end{longtable}"
     pages = (
-        rf"\newpage top\vspace*{{{height}pt}}\section{{Derivations}}{claim}" for height in range(540, 680, 10)
+        rf"\newpage top\vspace*{{{height}pt}}\section{{Derivations}}{below}"
+        for below in (claim, table)
+        for height in range(540, 680, 10)
     )
     text = "\n\n".join([preamble, r"\begin{document}", *pages, r"\end{document}"])
     (tmp_path / "report.tex").write_text(text, encoding="utf-8")
