@@ -186,21 +186,20 @@ def open_result(data: bytes, file: Path, name: str, at: Location, findings: Find
     from ..files.values import Result
 
     folder = file.parents[len(PurePath(name).parts) - 1]
-    words = {"file": name, "known": "what 'build' writes", "suggestion": _AGAIN}
+    known, reason, found = "what 'build' writes", "", None
     if file.parent.resolve() == output(folder).resolve():
+        known = "the values.json of another report"
         reason = "is what this report itself was built to: each build would begin with the last one"
-        words["known"] = "the values.json of another report"
-        findings.add("LS437", at, reason=reason, **words)
-        return None
-    try:
-        found = decoded(data, Result)
-    except Malformed as error:
-        reason = f"is no values.json: {error}"
-        findings.add("LS437", at, reason=reason, **words)
-        return None
-    if not is_as_built(file, data):
-        reason = "was changed after it was built: the manifest beside it has another fingerprint"
-        findings.add("LS437", at, reason=reason, **words)
+    else:
+        try:
+            found = decoded(data, Result)
+        except Malformed as error:
+            reason = f"is no values.json: {error}"
+        else:
+            if not is_as_built(file, data):
+                reason = "was changed after it was built: the manifest beside it has another fingerprint"
+    if reason:
+        findings.add("LS437", at, reason=reason, file=name, known=known, suggestion=_AGAIN)
         return None
     return found
 
