@@ -10,16 +10,17 @@ import shlex
 import signal
 import sys
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext, redirect_stdout
+from contextlib import AbstractContextManager, nullcontext, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO, cast
 
 from .machine.memory import ample
 from .machine.stopping import heeded, stoppable
+from .machine.streams import Outlet, opened
 from .machine.timing import RUN
 from .messages.diagnostics import VisibleStream
 from .verbs import VERBS
-from .verbs.common import BUG, OK, print_checks
+from .verbs.common import BUG, print_checks
 
 if TYPE_CHECKING:
     from .messages.diagnostics import Check
@@ -158,14 +159,20 @@ def _in_order(options: argparse.Namespace) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code."""
     ample()
+    opened()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a terminal of another encoding still gets all
-    try:
-        with stoppable(), redirect_stdout(cast(TextIO, VisibleStream(sys.stdout))):
-            return _run(arguments)
-    except KeyboardInterrupt as error:
-        print("\nstopped; nothing was half-written", file=sys.stderr)
-        return 128 + getattr(error, "number", signal.SIGINT)
+    told = cast(TextIO, Outlet(sys.stdout))
+    with (
+        redirect_stdout(cast(TextIO, VisibleStream(told))),
+        redirect_stderr(cast(TextIO, Outlet(sys.stderr, OSError))),
+    ):
+        try:
+            with stoppable():
+                return _run(arguments)
+        except KeyboardInterrupt as error:
+            print("\nstopped; nothing was half-written", file=sys.stderr)
+            return 128 + getattr(error, "number", signal.SIGINT)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
@@ -185,9 +192,6 @@ def _run(arguments: Sequence[str] | None) -> int:
                 print(*RUN.lines(), told(), sep="\n", file=sys.stderr)
     except LoopsheetError as error:
         return _refuse(error, options)
-    except BrokenPipeError:
-        _drop_output()  # whoever read us has seen enough
-        return OK
     except Exception as error:
         if (reason := _exhausted(error)) is not None:
             return _refuse(UsageError(diagnose("LS622", reason=reason)), options)
@@ -223,11 +227,6 @@ def _refuse(error: LoopsheetError, options: argparse.Namespace) -> int:
     return error.exit_code
 
 
-def _drop_output() -> None:
-    """Python would write once more, and complain, while it closes."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def _exhausted(error: Exception) -> str | None:
     """What the machine has no more of, if that is what happened."""
     from .messages.errors import EXHAUSTED
@@ -249,7 +248,7 @@ def _tell_machines(found: tuple[Check, ...], title: str, options: argparse.Names
             print_checks(found, form, title, {})
         sys.stdout.flush()
     except OSError:
-        _drop_output()
+        cast(Outlet, sys.stdout).drop()  # what nobody gets is not tried once more while Python closes
 
 
 def _colored(stream: TextIO) -> bool:

@@ -335,10 +335,22 @@ def test_new_makes_a_folder_that_builds(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "values.json").is_file()
 
 
-def test_a_closed_pipe_is_no_error() -> None:
-    command = f"{sys.executable} -m loopsheet show x paper | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert done.stderr == ""
+@pytest.mark.parametrize("streams", ["| true", "2>&1 | true", ">&-", "2>&-", "<&- >&- 2>&-", "2>/dev/full"])
+@pytest.mark.parametrize(("asked", "code"), [("show x", 0), ("show alhpa", 2), ("show alpha", 1)])
+def test_who_listens_changes_no_exit_code(
+    asked: str, code: int, streams: str, campaign: Path, require: Callable[..., str]
+) -> None:
+    """Of a reader that goes, and of streams that were never there, nothing is told, and nothing said."""
+    if code == 1:
+        file = campaign / "measurements.csv"
+        file.write_text(file.read_text(encoding="utf-8").replace(",51.03", ","), encoding="utf-8")
+    command = f"{sys.executable} -m loopsheet {asked} {streams}; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(
+        [require("bash"), "-c", command], cwd=campaign, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+    assert "Exception" not in done.stderr
 
 
 def test_show_prints_what_is_given_as_it_was_given(capsys: pytest.CaptureFixture[str]) -> None:
