@@ -250,3 +250,34 @@ def test_zeros_may_be_no_digits(E: str, values: Sequence[str], told: str, tmp_pa
     published = "".join(f"text,s,{n},{value},MPa\n" for n, value in enumerate(values, start=1))
     found = judged(tmp_path, ROUND, published, f'[parameters]\nE = "{E} MPa"\n', BARS)
     assert [told] in found
+
+
+BY_LOT = '''\
+from loopsheet import Method, groups, let, mean, measured
+
+
+class Lots(Method, source="own", rows="runs"):
+    """Means by lot."""
+
+    m = measured("g", "mass", positive=True)
+    lot = groups("lot")
+    d = let(2 * m, "double", "g")
+    d_lot = let(mean(d, of=lot), "mean by lot", "g")
+'''
+LOTS = "run,lot,m [g]\n1,x,10.11\n2,x,10.17\n3,y,12.40\n4,x,10.38\n5,y,12.51\n"
+
+
+def test_the_mean_of_a_group_without_one_of_its_rows(tmp_path: Path) -> None:
+    """It is named as the table has it, by its word; in what is accepted its number stands for that, too."""
+    published = "T,d_lot,x,20.28,g\nT,d_lot,y,24.91,g\n"
+    (own,), *_ = judged(tmp_path, BY_LOT, published, "", LOTS)
+    assert own == "d_lot[x] of T was taken without run 4 (x)"
+    published = published.replace("20.28,g", "20.28,g,differs,20.28 -> 20.44,rows d_lot[{}],known")
+    published = published.replace("24.91,g", "24.91,g,,,,")
+    report = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    (tmp_path / "report.toml").write_text(f'{report}[published]\nfile = "published.csv"\n', encoding="utf-8")
+    for called, right in (("x", True), ("1", True), ("y", False)):
+        rows = f"source,cell,index,value,unit,expect,recomputed,explained,reason\n{published.format(called)}"
+        (tmp_path / "published.csv").write_text(rows, encoding="utf-8")
+        found = {c.name: c.passed for c in checks(Study(tmp_path).refereed) if c.kind == "published"}
+        assert found == {"d_lot[1]": right, "d_lot[2]": True}

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from ...derivations.unit_text import is_pure
 from ..cells.address import index_text
 from ..engines.numpy import Program, evaluate
+from ..inputs.measurements import Measurements
 from ..result.verdict import INPUT, Change
-from ..sheet import Axis, Column, Formula, Given, Sheet
+from ..sheet import Axis, Column, Formula, Given, MemberAxis, Sheet
 from .campaign import Array, Campaign
 from .minimax import Best, best
 from .misprints import freed
@@ -190,13 +191,19 @@ def without_a_test(search: Search) -> Iterator[Explained]:
         members = [n for n in resting if problem.sheet[problem.published[n].cell].axis is None]
         if len(members) < 2 or len(table.tests) > MOST_TESTS or not search.worth(members):
             continue
-        cells = [problem.published[n].cell for n in members]
-        program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
-        own = [name for name in columns if name in program.sheet]
-        every = range(len(table.tests))
-        ways = [Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in every]
-        told = [f"without {table.row} {table.called(test)}" for test in table.tests]
-        yield from _over_rows(search, members, ways, told)
+        yield from _without_one(search, members, table, range(len(table.tests)))
+
+
+def _without_one(
+    search: Search, members: Sequence[int], table: Measurements, rows: Sequence[int]
+) -> Iterator[Explained]:
+    """Published values that all leave out the same of some rows of a table."""
+    campaign, cells = search.problem.campaign, [search.problem.published[n].cell for n in members]
+    program = campaign.program(cells, tuple(free for free in campaign.free if free not in cells))
+    own = [name for name in table.measured if name in program.sheet]
+    ways = [Way(program, campaign.labels, gone=dict.fromkeys(own, row)) for row in rows]
+    told = [f"without {table.row} {table.called(table.tests[row])}" for row in rows]
+    yield from _over_rows(search, members, ways, told)
 
 
 def _rests_on(problem: Problem, cell: str, columns: Collection[str]) -> bool:
@@ -205,18 +212,26 @@ def _rests_on(problem: Problem, cell: str, columns: Collection[str]) -> bool:
 
 
 def other_rows(search: Search) -> Iterator[Explained]:
-    """A published mean that leaves out a row or all rows of a test, or counts one twice."""
+    """A published mean that leaves out a row or all rows of a test, or counts one twice.
+
+    Of the mean of a group, one that leaves out a row.
+    """
     problem, sheet = search.problem, search.problem.campaign.sheet
     for n, value in enumerate(problem.published):
         column = sheet[value.cell]
         axes = sheet.summed_axes(column)
-        if column.axis is not None or len(axes) != 1 or axes[0].repeats:
+        if len(axes) != 1 or axes[0].repeats or not isinstance(column.rule, Formula):
             continue
-        if not isinstance(column.rule, Formula) or not search.worth({n}):
+        axis = axes[0]
+        if (column.axis is not None and not isinstance(axis, MemberAxis)) or not search.worth({n}):
             continue
-        rows = dict(_rows(problem.campaign, axes[0]))
-        ways = over_rows(column, axes[0], list(rows.values()), sheet)
-        yield from _over_rows(search, [n], ways, list(rows))
+        if isinstance(axis, MemberAxis):
+            groups = enumerate(problem.campaign.labels[axis.name])
+            own = [row for row, group in groups if (group,) == value.index]
+            yield from _without_one(search, [n], problem.campaign.inputs.on(axis.of.name), own)
+            continue
+        rows = dict(_rows(problem.campaign, axis))
+        yield from _over_rows(search, [n], over_rows(column, axis, list(rows.values()), sheet), list(rows))
 
 
 def _over_rows(
@@ -228,7 +243,7 @@ def _over_rows(
     if found:
         would, *also = (told[place] for place, _ in found)
         first, *others = (
-            Change("rows", value.cell, (), value.source, value.printed.text, would, count=0)
+            Change("rows", value.cell, value.index, value.source, value.printed.text, would, count=0)
             for value in (search.problem.published[n] for n in members)
         )
         changes = [replace(first, also=tuple(also), count=1), *others]

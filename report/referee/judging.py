@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -127,12 +128,30 @@ def referee(
         step("refereeing names of rows and fits")
         named = labels(whole, numbers() if numbers is not None else _numbers(sheet, inputs), first)
         fit = fits(whole, workbook.fits, first)
-    amended, misprints = _amended(campaign, checkable, step) if inputs.errata else (None, ())
+    amended, misprints = _amended(campaign, checkable, step)
+    told = partial(_told, values)
     return Referee(
-        alone, tuple(tables), joint, tuple(each.explanation for each in explained), tried, named, fit,
-        inputs.free, _known(inputs), amended, misprints, tuple(each.explanation for each in slips),
-        others, tuple(each.explanation for each in pinned),
+        alone, tuple(tables), joint, told(explained), tried, named, fit,
+        inputs.free, _known(inputs), amended, told(misprints), told(slips), others, told(pinned),
     )  # fmt: skip
+
+
+def _told(values: Values, explained: Sequence[Explained]) -> tuple[Explanation, ...]:
+    """Explanations, in which groups are called by their words."""
+
+    def word(change: Change, label: tuple[int, ...]) -> str:
+        return values.word(values.sheet[change.cell], label) if label and change.cell else ""
+
+    return tuple(
+        replace(
+            found.explanation,
+            changes=tuple(
+                replace(change, words=(word(change, change.index), word(change, change.other)))
+                for change in found.explanation.changes
+            ),
+        )
+        for found in explained
+    )
 
 
 def _is_gone(campaign: Campaign, published: PublishedValue) -> bool:
@@ -208,15 +227,16 @@ def _known(inputs: Inputs) -> tuple[Change, ...]:
 
 def _amended(
     campaign: Campaign, published: Sequence[PublishedValue], step: Callable[[str], None]
-) -> tuple[TableVerdict, tuple[Explanation, ...]]:
-    """Whether everything comes out once the known misprints are put right, and if not, what else is wrong."""
+) -> tuple[TableVerdict | None, tuple[Explained, ...]]:
+    """Whether everything comes out with the known misprints put right, and if not, what else is wrong."""
+    if not campaign.inputs.errata:
+        return None, ()
     step("refereeing with the known misprints put right")
     inputs = campaign.inputs.amended
     problem = Problem.of(replace(campaign, inputs=inputs), published)
     which = list(range(len(problem.published)))
     verdict, found = _together(ALL, problem, which, Certificate(problem), (), ())
-    misprints = explanations(problem, step)[0] if found.mismatch > 1 else ()
-    return verdict, tuple(each.explanation for each in misprints)
+    return verdict, explanations(problem, step)[0] if found.mismatch > 1 else ()
 
 
 def _together(

@@ -137,6 +137,18 @@ class Change:
     """The power of ten that a unit is off by."""
     count: int = 1
     """How many printed numbers change; a manner of printing that holds for a column counts as one."""
+    words: tuple[str, str] = ("", "")
+    """What the groups are called that the row and the other row are, where they have words."""
+
+    @property
+    def row(self) -> tuple[int | str, ...]:
+        """What its row is called."""
+        return (self.words[0],) if self.words[0] else self.index
+
+    @property
+    def other_row(self) -> tuple[int | str, ...]:
+        """What the other row is called."""
+        return (self.words[1],) if self.words[1] else self.other
 
 
 @dataclass(frozen=True)

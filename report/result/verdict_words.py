@@ -7,8 +7,10 @@ is rounded to the nearest, what is certain is rounded outwards: no more is claim
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
+from functools import partial
 
 from ...derivations.proved import enumerated
 from ..cells.address import address, index_text
@@ -228,23 +230,21 @@ def name(found: verdict.Explanation) -> str:
 
 def _name(change: verdict.Change, *, sourced: bool = True) -> str:
     where = f"({change.source})" if sourced and change.source != verdict.INPUT else ""
-    return " ".join(filter(None, (change.kind, address(change.cell, change.index), where)))
+    return " ".join(filter(None, (change.kind, address(change.cell, change.row), where)))
 
 
 def holds(said: str, explanations: Sequence[verdict.Explanation]) -> bool:
     """Whether what a known difference is explained by is an explanation; nothing always is.
 
-    It may be its name, also without the table, or what the referee says that is claimed.
+    It may be its name, also without the table, or what the referee says that is claimed; a group may be
+    called by its number.
     """
     said = said.removeprefix("perhaps ")
     return not said or any(
-        said == " and ".join(told)
+        said == " and ".join(map(told, changes))
         for each in explanations
-        for told in (
-            map(_name, each.changes),
-            (_name(change, sourced=False) for change in each.changes),
-            map(claimed, each.changes),
-        )
+        for changes in (each.changes, [replace(change, words=("", "")) for change in each.changes])
+        for told in (_name, partial(_name, sourced=False), claimed)
     )
 
 
@@ -310,7 +310,7 @@ def follows(found: verdict.Explanation) -> str:
 
 def claimed(change: verdict.Change) -> str:
     """What is claimed of something printed."""
-    cell = address(change.cell, change.index)
+    cell = address(change.cell, change.row)
     of = "" if change.source == verdict.INPUT else f" of {change.source}"
     printed, would = change.printed, change.would_print
     match change.kind:
@@ -337,10 +337,10 @@ def claimed(change: verdict.Change) -> str:
         case "order":
             return f"{cell}{of} stands in another order, {would}"
         case "label" if not change.cell:
-            both = f"rows {index_text(change.index)} and {index_text(change.other)}"
+            both = f"rows {index_text(change.row)} and {index_text(change.other_row)}"
             return f"{both}{of} stand in each other's place"
         case "label" if change.index:
-            other = address(change.cell, change.other)
+            other = address(change.cell, change.other_row)
             return f"{cell} and {other}{of} stand in each other's place ({printed} and {would})"
         case "label":
             return f"{cell}{of} is {would}"
@@ -378,7 +378,7 @@ def _suggested(change: verdict.Change) -> str:
         case "order":
             return f"may belong in the order {would}"
         case "label" if not change.cell:
-            return f"rows {index_text(change.index)} and {index_text(change.other)} may have changed places"
+            return f"rows {index_text(change.row)} and {index_text(change.other_row)} may have changed places"
         case "label" if change.index:
             return f"{printed} and {would} may have changed places"
         case "label":
