@@ -51,7 +51,8 @@ class StepProof:
     def sentence(self) -> str:
         """The finding, in words."""
         if self.status is ProofStatus.REFUTED:
-            return f"at {said(self.counterexample)} the sides are {self.sides[0]} and {self.sides[1]}"
+            at = f"at {said(self.counterexample)} " if self.counterexample else ""
+            return f"{at}the sides are {self.sides[0]} and {self.sides[1]}"
         if self.status is ProofStatus.UNDECIDED:
             return self.why
         where = f" where {self.why}" if self.why else ""

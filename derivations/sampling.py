@@ -237,7 +237,7 @@ def examine(system: System, seed: str) -> Outcome:
     if unlike:
         raise Refused("the premise times the factor is not the claim")
     if undefined:
-        raise Refused(f"it has no value at {said(undefined[0])}")
+        raise Refused(f"it has no value at {said(undefined[0])}" if undefined[0] else "it has no value")
     if counted == POINTS:
         return Outcome(counted, float(worst))
     raise Refused(

@@ -109,14 +109,14 @@ class Space:
 
         It is the vocabulary's, where its symbol is no freer than this one.
         """
-        quantity = self.vocabulary.find(self.names.get(symbol, symbol))
+        quantity, whole = self.vocabulary.find(self.names.get(symbol, symbol)), bool(symbol.is_integer)
         if quantity is not None and (quantity.positive or not symbol.is_positive):
-            low, high = quantity.span
-        elif symbol.is_integer:
+            (low, high), whole = quantity.span, whole or quantity.whole
+        elif whole:
             low, high = (1.0 if symbol.is_positive else -9.0), 9.0
         else:
             low, high = (0.5 if symbol.is_positive else -2.0), 2.0
-        return mpmath.mpf(low), mpmath.mpf(high) - mpmath.mpf(low), bool(symbol.is_integer)
+        return mpmath.mpf(low), mpmath.mpf(high) - mpmath.mpf(low), whole
 
     def describe(self, point: list[Any], more: Mapping[Any, Any] | None = None) -> dict[str, str]:
         """Say where a point lies; of a column, the rows that were asked for."""

@@ -122,6 +122,8 @@ class Quantity:
     low: float | None = None
     high: float | None = None
     """`low` and `high`: between which it is known to lie, in SI: nothing else is let in."""
+    whole: bool = False
+    """Whether it is a whole number."""
 
     def __post_init__(self) -> None:
         if self.positive is None:

@@ -220,3 +220,43 @@ def test_what_is_proved_must_hold_of_the_data(tmp_path: Path, capsys: pytest.Cap
             assert main(["check", str(tmp_path)]) == 1
             told = capsys.readouterr().out
             assert "finding: (4), means, does not hold of these data: its sides differ by -0.55 in SI" in told
+
+
+def test_a_claim_that_has_no_value_of_these_data_is_told(tmp_path: Path) -> None:
+    """What was proved of all numbers for which both sides have values says nothing of 0/0."""
+    code = (
+        "from loopsheet import Method, claim, let, measured\n"
+        "class Parts(Method):\n    x = measured('m', 'first')\n    y = measured('m', 'second')\n"
+        "    s = let(x + y, 'sum')\n    claim((x**2 - y**2) / (x - y), s, 'quotient')\n"
+    )
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    for second, told in (("2.0", "(2), quotient, has no value of these data in row 2"), ("2.5", "")):
+        (tmp_path / "m.csv").write_text(f"test,x [m],y [m]\n1,1.0,3.0\n2,2.0,{second}\n", encoding="utf-8")
+        study = Study(tmp_path)
+        assert all(proof.status.passes for proof in study.proved.proofs)
+        (check,) = (c for c in study.computed.oddities if c.kind == "claim")
+        assert (check.passed, check.note) == (True, "warning" if told else "")
+        assert told in check.message
+
+
+def test_a_whole_number_is_drawn_as_one(tmp_path: Path) -> None:
+    code = (
+        "from sympy import cos, pi\nfrom loopsheet import Method, claim, given, let\n"
+        "class Turns(Method):\n    n = given('1', 'turns', whole=True)\n"
+        "    m = given('1', 'one or two', whole=True, low=1, high=2)\n"
+        "    c = let(cos(2 * pi * n), 'cosine')\n    claim(c, 1, 'whole turns')\n"
+        "    claim(cos(pi * n), 1, 'half turns')\n    claim((m - 1) * (m - 2), 0, 'one or two')\n"
+        "    claim(m, 1, 'one')\n"
+    )
+    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
+    toml = 'title = "T"\nworkbook = "workbook.py"\n[parameters]\nn = "4"\nm = "1"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    found = {proof.equation.title: proof.status for proof in Study(tmp_path).proved.proofs}
+    assert {said: found[said] for said in ("whole turns", "half turns", "one or two", "one")} == {
+        "whole turns": ProofStatus.UNDECIDED,
+        "half turns": ProofStatus.REFUTED,
+        "one or two": ProofStatus.UNDECIDED,
+        "one": ProofStatus.REFUTED,
+    }

@@ -43,9 +43,12 @@ def claims(
     whole = Sheet((*sheet.columns, *own))
     judge = Judge.of(whole, laid_out(whole, labels, data), labels, data)
     lost = any(status != Status.OK for c in sheet.columns for status in judge.judged.status[c.name])
+    values = judge.judged.rounded(whole)
     for claim, column in zip(said, own, strict=True):
         off = list(_off(judge, column))
-        yield Check(CLAIM, claim.label, not off, _sentence(claim, off, lost), place)
+        empty = [cell.label for cell in values.cells(column.name) if cell.value is None and not cell.culprit]
+        note = "warning" if empty and not off else ""
+        yield Check(CLAIM, claim.label, not off, _sentence(claim, off, lost, empty), place, note=note)
 
 
 def _difference(number: int, claim: Claimed) -> Column:
@@ -62,7 +65,14 @@ def _off(judge: Judge, column: Column) -> Iterator[tuple[str, float]]:
             yield address, float(value)
 
 
-def _sentence(claim: Claimed, off: list[tuple[str, float]], lost: bool) -> str:
+def _sentence(
+    claim: Claimed, off: list[tuple[str, float]], lost: bool, empty: Sequence[tuple[int, ...]]
+) -> str:
+    if not off and empty:
+        rows = f" in row {', '.join(map(str, empty[0]))}" if empty[0] else ""
+        return (
+            f"{claim.label}, {claim.meaning}, has no value of these data{rows}: a proof says nothing of that"
+        )
     if not off:
         return f"{claim.label} holds of these data"
     address, value = off[0]

@@ -20,6 +20,9 @@ from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
 from .body import MethodBody
 from .errors import CURRENT, WatchedBody
 
+FEW = 4.0
+"""Where nothing else is said of it, a whole number is drawn from a half to twice as many."""
+
 
 def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     """What is given, for proofs: it is drawn between its limits, or beyond the only one that it has.
@@ -29,11 +32,12 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     low, high = bounds.low, bounds.high
     known = (low, high) if is_sure else (None, None)
     if low is None or high is None:
-        (end,) = (each for each in (low, high) if each is not None)
-        far = max(abs(end), 1.0) * (1 if high is None else -1)
+        end = next((each for each in (low, high) if each is not None), 0.0)
+        far = max(abs(end), FEW if bounds.integer else 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
-    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
-    return Quantity(*own, bool(column.positive), "", *known)
+    span = low, high + bounds.integer  # of which the whole part counts
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), span
+    return Quantity(*own, bool(column.positive), "", *known, whole=bounds.integer)
 
 
 def _words(body: MethodBody, place: int) -> Iterator[str]:
@@ -95,7 +99,7 @@ def workbook_of(
     scalars = (c.name for c in columns if c.axis is None and c.equation)
     last = [each for each in scalars if body.of_fits.get(each, each not in used)]
     bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
-    limited = (one for one, said in bounds.items() if (said.low, said.high) != (None, None))
+    limited = (one for one, said in bounds.items() if said.integer or (said.low, said.high) != (None, None))
     words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
     taken = body.ledger or Ledger((), vocabulary=words)
     in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
