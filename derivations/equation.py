@@ -57,6 +57,13 @@ class Equation:
     renamed: tuple[tuple[tuple[Any, Any], ...], ...] = field(default=(), repr=False)
     """What `at` put in, call by call: a proof makes the instance again from the parent."""
 
+    def __post_init__(self) -> None:
+        if any(isinstance(member, int | float) for member in self.members):  # a plain number: x = 0
+            from sympy import sympify
+
+            members = tuple(sympify(member, rational=True) for member in self.members)
+            object.__setattr__(self, "members", members)
+
     @property
     def label(self) -> str:
         """Number and part: ``(12a)``; the title where there is no number."""

@@ -351,7 +351,16 @@ class Reference:
     @cached_property
     def index(self) -> str | None:
         """The index that names its row; None for what has one value."""
-        return self.cell.indices[0].name if self._is_indexed else None
+        if not self._is_indexed:
+            return None
+        row = self.cell.indices[0]
+        if not hasattr(row, "name"):
+            raise SheetError(
+                f"{self.name.partition('[')[0]}[{row}] is one row by its number, which no formula names: "
+                "standing(...) says which cell it is, the first(...) or second(...) of a pair; a column of 1 "
+                "and 0, stated exact, tells rows apart"
+            )
+        return str(row.name)
 
     @property
     def _is_indexed(self) -> bool:

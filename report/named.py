@@ -264,7 +264,10 @@ def member(axis: MemberAxis) -> Member:
 
 def _over(total: Basic, sums: Mapping[Expr, Axis]) -> Axis:
     """The axis that something is taken over."""
-    return sums[member_of(total) or total.limits[0][0]]
+    index = member_of(total) or total.limits[0][0]
+    if index not in sums:
+        raise SheetError(f"{total} runs over no rows of a table: total(x) and mean(x) take all of them")
+    return sums[index]
 
 
 def _counting(expression: Basic) -> set[Basic]:

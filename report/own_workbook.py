@@ -9,6 +9,7 @@ import types
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import signature
+from keyword import iskeyword
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -185,7 +186,8 @@ class _Own:
 def _said(error: BaseException) -> str:
     """What a sheet complains of, or what Python does, with its name."""
     ours = isinstance(error, SheetError)
-    return str(error) if ours else f"{type(error).__name__}: {error}".removesuffix(": ")
+    text = error.msg if isinstance(error, SyntaxError) else str(error)  # without its line, which is shown
+    return text if ours else f"{type(error).__name__}: {text}".removesuffix(": ")
 
 
 def _hint(error: BaseException) -> str:
@@ -232,6 +234,10 @@ def _hint(error: BaseException) -> str:
             )
         case TypeError() | AttributeError() if re.search("symbol|Indexed|Symbol", str(error)):
             return "a name stands for a cell in formulas: no number yet, and no list; mean(x) is its mean"
+        case SyntaxError(text=str(line)) if iskeyword(own := line.partition("=")[0].strip()):
+            return f"'{own}' is a word of Python: call it {own}_, with latex=... as it is printed"
+        case SyntaxError() if re.search(r"U\+(2212|2013)", error.msg):
+            return "write the minus sign as an ordinary hyphen"
     return "" if isinstance(error, SyntaxError) else _HINT
 
 
@@ -269,7 +275,7 @@ def place_of_column(path: Path, code: bytes, about: Sequence[str]) -> Location:
         for name in about
         for way in (
             rf"Column\(\s*{_quoted(name)}",
-            rf"(?m)(?<=^    ){re.escape(name)}\b(?= *=)",
+            *(rf"(?m)(?<=^{space}){re.escape(name)}\b(?= *=)" for space in (" " * 4, " " * 8)),
             _quoted(name),
         )
     )

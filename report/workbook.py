@@ -32,6 +32,8 @@ class Measured:
     """What it is, for messages and captions."""
     bounds: Bounds = field(default_factory=Bounds)
     """What values are allowed, in SI."""
+    beyond: str = ""
+    """How its method would allow others, if that is not plain where it is declared."""
     scatter: str = ""
     """Of what a model is fitted to, the cell that tells how it scatters about the curve."""
     table: str = ""
@@ -72,9 +74,10 @@ class Parameter:
     unit: str
     meaning: str
     bounds: Bounds = field(default_factory=Bounds)
-    """`name`, `unit`, `meaning` and `bounds`: as for :class:`Measured`."""
     default: str | None = None
     """The printed value with its unit that holds when it is left out; None: no default."""
+    beyond: str = ""
+    """What is named as in :class:`Measured` is as there."""
 
 
 @dataclass(frozen=True)

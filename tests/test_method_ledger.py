@@ -27,6 +27,7 @@ from loopsheet.derivations.vocabulary import Quantity, Vocabulary
 from loopsheet.report.cli import main
 from loopsheet.report.column import Given, Iterated, Root
 from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.study import Study
 
 WORDS = Vocabulary(
     Quantity("t", "time of the fall", "s", "t%s"),
@@ -209,3 +210,109 @@ def test_what_is_refused(line: str, said: str, tmp_path: Path, capsys: pytest.Ca
     told = capsys.readouterr().err
     assert said in told
     assert "workbook.py:12" in told
+
+
+GAUGE = """\
+from sympy import Abs, Sum, Symbol, sqrt
+from loopsheet import Method, by, given, let, mean, measured, standing
+from loopsheet.derivations.equation import Ledger, define
+from loopsheet.derivations.vocabulary import Quantity, Vocabulary
+
+W = Vocabulary(
+    Quantity("x", "reading of the gauge", "m", "x%s"{positive}), Quantity("D", "mean size", "m", "D%s"),
+    Quantity("y", "way", "m", "y%s"{low}), Quantity("z", "way from there", "m", "z%s"),
+)
+X = W["x"]
+D, y, z = W.plain("D y z")
+k, n = (Symbol(name, integer=True, positive=True) for name in "kn")
+SIZE = define("(1)", D, Sum(Abs(X[k]), (k, 1, n)) / n, "mean size of a reading")
+WAY = define("(2)", z, y - D, "way from there on")
+
+
+class Gauge(Method, ledger=Ledger((SIZE, WAY), vocabulary=W), rows="loads"):
+    '''A gauge.'''
+
+    x = measured(X)
+    y = given(W["y"]{bounds})
+    with standing({{X[k]: x}}):
+        D = by(SIZE)
+    z = by(WAY)
+    e = let(mean(sqrt(x**2)), "the same")
+"""
+
+
+def gauge_of(
+    folder: Path,
+    x: str = "2.00 -3.00 4.00",
+    y: str = "7.0 m",
+    positive: str = "",
+    low: str = "",
+    bounds: str = "",
+) -> str:
+    code = GAUGE.format(positive=positive, low=low, bounds=bounds)
+    (folder / "workbook.py").write_text(code, encoding="utf-8")
+    rows = "".join(f"{n},{each}\n" for n, each in enumerate(x.split(), start=1))
+    (folder / "m.csv").write_text(f"load,x [m]\n{rows}", encoding="utf-8")
+    toml = f'workbook = "workbook.py"\n[parameters]\ny = "{y}"\n[measurements]\nfile = "m.csv"\n'
+    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    return str(folder)
+
+
+def test_what_a_word_says_is_positive_is_so_of_the_data(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its formulas and proofs count on it: the mean size of 2, -3 and 4 was 1."""
+    assert main(["show", "D", gauge_of(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "x is out of range: '-3.00'" in told
+    assert "m.csv:3:3" in told
+    assert "with positive=False in its Quantity the method lets any number in" in told
+    folder = gauge_of(tmp_path, positive=", positive=False")
+    assert [Study(Path(folder)).computed.values.scalar(name) for name in ("D", "e")] == [3.0, 3.0]
+
+
+def test_a_word_that_is_positive_is_not_declared_otherwise(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", gauge_of(tmp_path, "1 2", bounds=", low=-5, high=9")]) == 2
+    told = capsys.readouterr().err
+    assert "low=-5, high=9: y is positive, as its word says; with positive=False in its Quantity" in told
+
+
+def test_the_ends_that_a_word_has_hold_of_the_data(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = gauge_of(tmp_path, "1 2", low=", low=8.0, high=9.0")
+    assert main(["check", folder]) == 2
+    assert "y is out of range: '7.0'" in capsys.readouterr().err
+
+
+def test_what_a_word_says_is_positive_and_is_not_is_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["show", "z", gauge_of(tmp_path, "1 2", "1.0 m")]) == 1
+    assert "it gives no positive number here, and z is said to be positive" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        ("X[2] - X[1]", "x[1] is one row by its number, which no formula names"),
+        ("X[k] - X[k - 1]", "x[k - 1] is one row by its number"),
+        (
+            "Sum(X[k], (k, 1, 3))",
+            "D: a sum runs over all rows of one index set ((k, 1, n)), not over (k, 1, 3)",
+        ),
+    ],
+)
+def test_a_formula_that_names_single_rows_is_told(
+    formula: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = Path(gauge_of(tmp_path, "1 2"))
+    code = (folder / "workbook.py").read_text(encoding="utf-8")
+    code = code.replace("Sum(Abs(X[k]), (k, 1, n)) / n", formula)
+    (folder / "workbook.py").write_text(code, encoding="utf-8")
+    assert main(["check", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert said in told
+    assert "workbook.py:23" in told

@@ -59,6 +59,8 @@ SHEET = "Sheet((d, *given.values(), l))"
         ("\nWORKBOOK = 1 / 0", "WORKBOOK", "ZeroDivisionError: division by zero"),
         ("\ndef (", "def", "SyntaxError: "),
         ("x = '\0'", "", "SyntaxError: "),
+        ("if True:\n    lambda = 2", "lambda", "'lambda' is a word of Python: call it lambda_, with latex"),
+        ("x = 2 \u2212 1", "x = 2", "write the minus sign as an ordinary hyphen"),
         ("\n\nraise SystemExit(0)", "raise", "SystemExit: 0"),
         ("import sys\nsys.exit()", "sys.exit", "cannot be used: SystemExit\n"),
         ("raise BaseException", "raise", "cannot be used: BaseException\n"),

@@ -414,7 +414,11 @@ class Values:
         if empty:
             return f"{outside}: {empty[0]} has no rows"
         if isinstance(rule, Formula):
-            return f"{outside}: it gives no {'positive' if column.positive else 'finite'} number here"
+            if column.positive:
+                return (
+                    f"{outside}: it gives no positive number here, and {column.name} is said to be positive"
+                )
+            return f"{outside}: it gives no finite number here"
         if isinstance(rule, Root):
             return f"{outside}: it has no value at an end of the interval of its root, or its root gives none"
         return outside

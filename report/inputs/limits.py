@@ -329,6 +329,6 @@ def _in_place(
     declared = parse_open(unit)
     if declared.zero and not width and number.value < 0:
         text, allowed = f"{number.text}{behind(number.unit)}", Bounds(low=0).said(number.unit)
-        findings.add("LS406", at, name=said, text=text, allowed=allowed, unit=number.unit)
+        findings.add("LS406", at, name=said, text=text, allowed=allowed, unit=number.unit, beyond="")
         return False
     return True

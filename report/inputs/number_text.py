@@ -79,7 +79,7 @@ def _why_not(text: str) -> NumberError:
     if len(text) > _LONGEST:
         return NumberError("LS405", text=text)
     if text.lower().lstrip("+-") in _NOT_FINITE:
-        return NumberError("LS404", text=text)
+        return NumberError("LS404", text=text, suggestion="leave the cell of what was not measured empty")
     usual = re.sub("[\u2212\u2013]", "-", text)  # word processors make a minus sign or a dash of the hyphen
     if _COMMA.fullmatch(usual):
         point = max(usual.rfind("."), usual.rfind(","))
@@ -172,7 +172,8 @@ def read_value(
         return None
     if unit is not None and not declared.bounds.allow(printed.value):
         allowed = f"{declared.bounds.said(declared.unit)} ({declared.meaning})"
-        findings.add("LS406", at, name=declared.name, text=text, unit=unit.text, allowed=allowed)
+        said = {"name": declared.name, "text": text, "allowed": allowed, "beyond": declared.beyond}
+        findings.add("LS406", at, **said, unit=unit.text)
         return None
     return printed
 

@@ -232,7 +232,7 @@ CATALOGUE: dict[str, Entry] = {
         "not finite",
         "{name} is not a finite number: '{text}'",
         "a finite number",
-        "leave the cell of what was not measured empty",
+        "{suggestion}",
     ),
     "LS405": Entry(
         "number out of reach",
@@ -243,7 +243,7 @@ CATALOGUE: dict[str, Entry] = {
         "out of range",
         "{name} is out of range: '{text}'",
         "{allowed}",
-        "check the sign, the decimal point and the unit {unit} that it is read in",
+        "check the sign, the decimal point and the unit {unit} that it is read in{beyond}",
     ),
     "LS407": Entry(
         "uncertainty negative",

@@ -457,8 +457,8 @@ class MethodBody(dict[str, Any]):
         rows = self.axis if said.of is None else said.of
         if rows not in self.row_axes:
             raise SheetError(f"{name}: {none_of(rows, 'rows')}", name)
-        measured = Measured(*own, table=rows.name)
-        self.inputs.append(measured if said.is_measured else Parameter(*own, said.default))
+        measured = Measured(*own, said.beyond, table=rows.name)
+        self.inputs.append(measured if said.is_measured else Parameter(*own, said.default, said.beyond))
         self.examples |= {name: said.example} if said.example else {}
         self.constants += [name] * said.is_constant
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sympy import Expr, Float, Function, Number, Rational, sympify
+from sympy import Expr, Float, Function, Number, Rational, sign, sympify
 from sympy.core.numbers import ComplexInfinity, ImaginaryUnit, Infinity, NaN, NegativeInfinity
 from sympy.core.relational import Relational
 
@@ -23,6 +23,7 @@ FUNCTIONS = (
     *("Abs", "Max", "Min"),
 )
 """Besides powers; as sympy calls them."""
+_ANY_SIGN = "positive=False in its Quantity"
 MOST_POINTS = 1000
 """Of one curve; beyond, a picture shows no more of it."""
 
@@ -79,6 +80,7 @@ class InputLine(Declaration):
         if isinstance(self.unit, Quantity):
             object.__setattr__(self, "quantity", self.unit)
             object.__setattr__(self, "meaning", self.meaning or self.unit.meaning)
+            object.__setattr__(self, "bounds", _let_in(self.unit, self.bounds))
             object.__setattr__(self, "unit", self.unit.unit)
         super().__post_init__()
         if not self.meaning.strip():
@@ -89,6 +91,12 @@ class InputLine(Declaration):
         if default is not None and not isinstance(default, str):
             written = f"{default}{behind(self.unit)}"
             raise SheetError(f"a default is a text, as printed and with its unit: default={written!r}")
+
+    @property
+    def beyond(self) -> str:
+        """How to let in more than its word does, which says so without its author having written it."""
+        unsaid = self.quantity and self.quantity.positive and not self.column["positive"]
+        return f"; with {_ANY_SIGN} the method lets any number in" if unsaid else ""
 
 
 @dataclass(frozen=True)
@@ -202,6 +210,21 @@ def with_unit(name: str, sought: UnknownLine) -> UnknownLine:
     return replace(sought, column=column, start=start, bounds=bounds)
 
 
+def _let_in(word: Quantity, bounds: Bounds) -> Bounds:
+    """What is allowed of an input, without what its word does not let in: formulas and proofs count on it."""
+    ends = (("low", bounds.low), ("high", bounds.high))
+    if word.positive and any(end is not None and end < 0 for _, end in ends):
+        said = ", ".join(f"{name}={end:g}" for name, end in ends if end is not None)
+        raise SheetError(f"{said}: {word.name} is positive, as its word says; with {_ANY_SIGN} it is not")
+    if word.positive and not bounds.low:
+        bounds = replace(bounds, low=0, low_open=True)
+    if word.low is not None and (bounds.low is None or bounds.low < word.low):
+        bounds = replace(bounds, low=word.low, low_open=False)
+    if word.high is not None and (bounds.high is None or bounds.high > word.high):
+        bounds = replace(bounds, high=word.high, high_open=False)
+    return bounds
+
+
 def refuse_zero(name: str, said: Declaration, size: ParsedUnit) -> None:
     """Refuse what is positive in a unit whose zero is another than that of SI."""
     if size.zero and said.column["positive"]:
@@ -229,7 +252,8 @@ def exact(formula: Any) -> Expr:
     for part in formula.atoms(Function):
         if part.func.__name__ not in FUNCTIONS and not isinstance(part, Member):
             known = ", ".join(sorted(FUNCTIONS))
-            raise SheetError(f"{part.func} is none of the functions that every engine has: {known}")
+            said = f"{part.func}{', of which the derivative of Abs is made,' if part.func is sign else ''}"
+            raise SheetError(f"{said} is none of the functions that every engine has: {known}")
     typed = {}
     for number in formula.atoms(Float) - {Float(0)}:
         own, value = repr(float(number)), float(number)
