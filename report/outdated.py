@@ -9,6 +9,7 @@ from .files.manifest import NAME, manifest_of
 from .inputs.folders import PAPER, changed, is_report, output
 from .messages.diagnostics import Check
 from .messages.errors import Location, listing
+from .views import FORMATS
 
 
 def outdated(folder: Path, files: Iterable[str]) -> Iterator[Check]:
@@ -44,17 +45,28 @@ def _touched(folder: Path) -> Iterator[Check]:
     out = output(folder)
     manifest = manifest_of(out)
     said = ""
-    if manifest is None and (out / NAME).exists():
-        said = (
-            f"{(out / NAME).as_posix()} is damaged, so that nobody can tell whether {out.as_posix()} is as "
-        )
-        said += "it was built: build it again"
-    elif manifest and (names := sorted(changed(out, manifest.outputs))):
+    if manifest is None:
+        is_there = (out / NAME).exists()
+        if is_there or any((out / file).is_file() for _, file, _ in FORMATS.values()):
+            what = f"{(out / NAME).as_posix()} is {'damaged' if is_there else 'missing'}"
+            said = (
+                f"{what}, so that nobody can tell whether {out.as_posix()} is as it was built: build it again"
+            )
+    elif names := sorted({*changed(out, manifest.outputs), *changed(out, _of_crate(out))}):
         after = listing(names, last="and")
         said = f"{out.as_posix()} is not as it was built, {after}: 'loopsheet verify' tells more"
     if said:
         at = Location((folder / "report.toml").as_posix())
         yield Check("outputs", f"{folder.as_posix()} as built", True, said, at, note="warning")
+
+
+def _of_crate(out: Path) -> dict[str, str]:
+    """What a crate added to an output, if it is one."""
+    if not (out / "ro-crate-metadata.json").exists():
+        return {}
+    from .archive.crate import added
+
+    return {name.as_posix(): digest for name, digest in added(out).items()}
 
 
 def _changed(folder: Path) -> list[str]:

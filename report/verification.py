@@ -5,14 +5,16 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from .archive.crate import added
 from .archive.differences import EPS, Differences, compare
 from .build import build
 from .files.form import Index
 from .files.manifest import Manifest, read_manifest
 from .files.values import NAME, read_result
-from .inputs.folders import built_from
+from .inputs.folders import built_from, changed
 from .inputs.inputs import Find
 from .machine.kept import nothing_kept
 from .machine.scratch import scratch
@@ -31,6 +33,8 @@ _UNEXPLAINED = (
     "input, sources, libraries and processor are the same, so nothing that is recorded explains it; an "
     "output was edited together with its fingerprint, or a program that the manifest does not tell made it"
 )
+_NOT_OF_CRATE = "is not as the crate has it"
+_ENDS = ", in the ends of its lines alone: '* -text' in .gitattributes keeps Git from that"
 _HALF = "a build was killed while it put its files in place: some are of it, some are older"
 
 
@@ -86,10 +90,11 @@ def verify(
         # What is correctly rounded is the same on every processor.
         rounded = "" if report.exactly else _rounded_otherwise(then, now, differences)
         checks = (
-            *_same("input", then.inputs, now.inputs, "the input"),
+            *_same("input", then.inputs, now.inputs, "the input", partial(_ends_alone, folder)),
             *_same("source", then.sources, now.sources, "the"),
             *_same("library", then.software, now.software, ""),
             *_outputs(out, then, now, rounded),
+            *_of_crate(out),
             *_moves(differences),
         )
         verdict = _verdict(checks, then, now, differences, rounded, bool(report.exactly))
@@ -104,7 +109,19 @@ def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None)
     return f"another processor rounds {found.noise} numbers otherwise"
 
 
-def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str) -> Iterator[Check]:
+def _ends_alone(folder: Path, name: str, was: str) -> bool:
+    """Whether a file is what it was but for the ends of its lines."""
+    plain = (folder / name).read_bytes().replace(b"\r\n", b"\n")
+    return was in (hashlib.sha256(each).hexdigest() for each in (plain, plain.replace(b"\n", b"\r\n")))
+
+
+def _same(
+    kind: str,
+    then: Mapping[str, str],
+    now: Mapping[str, str],
+    what: str,
+    ends_alone: Callable[[str, str], bool] = lambda *_: False,
+) -> Iterator[Check]:
     """A check for each name that there was or is."""
     if not then and now:
         yield Check(kind, "all", True, f"the manifest does not say with which {kind}s", skipped=True)
@@ -121,7 +138,7 @@ def _same(kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str)
         elif kind == "library":
             yield Check(kind, name, False, f"{said} was {was} and is {is_now}")
         else:
-            yield Check(kind, name, False, f"{said} was changed")
+            yield Check(kind, name, False, f"{said} was changed{_ENDS if ends_alone(name, was) else ''}")
 
 
 def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator[Check]:
@@ -149,6 +166,15 @@ def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator
             said = "is the same, byte for byte" if again == was else "is another file when it is built again"
             told = f": {rounded}" if rounded and again != was else ""
             yield Check("output", name, again == was or bool(rounded), f"{name} {said}{told}")
+
+
+def _of_crate(out: Path) -> Iterator[Check]:
+    """Each file that `crate` added to what was built, as it put it there."""
+    files = {name.as_posix(): digest for name, digest in added(out).items()}
+    altered = set(changed(out, files))
+    for name in files:
+        said = _NOT_OF_CRATE if name in altered else "is as the crate has it"
+        yield Check("output", name, name not in altered, f"{name} {said}")
 
 
 def _is_inside(out: Path, file: Path) -> bool:
@@ -223,7 +249,7 @@ def _verdict(
         return f"different: {' and '.join(changed)} changed"
     if any(check.message == _HALF for check in failed):
         return f"different: {_HALF}; build it again"
-    since = ("after it was built", "is missing", _UNTOLD)
+    since = ("after it was built", "is missing", _UNTOLD, _NOT_OF_CRATE)
     if all(check.message.endswith(since) for check in failed if check.kind == "output"):
         return "different: the outputs were changed after they were built, and nothing else was"
     if not then.sources:

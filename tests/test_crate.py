@@ -177,6 +177,27 @@ def test_a_crate_is_built_again_from_itself(
     assert (archive / "inputs/out/values.json").read_bytes() == (archive / "values.json").read_bytes()
 
 
+def test_what_was_done_to_a_crate_is_told(
+    gauge: Path, chdir: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its copies of the inputs are the record."""
+    chdir(gauge)
+    assert main(["build", "--to", "json"]) == 0
+    assert main(["crate", "--date", "2026-03-31", "--license", "MIT"]) == 0
+    verified = ["verify", "--run-workbook"]
+    assert main(verified) == 0
+    capsys.readouterr()
+    copy = Path("out/inputs/report.toml")
+    for alter in (lambda: copy.write_bytes(copy.read_bytes() + b"# mine"), copy.unlink):
+        alter()
+        assert main(verified) == 1
+        told = capsys.readouterr().out
+        assert "inputs/report.toml is not as the crate has it" in told
+        assert told.endswith("the outputs were changed after they were built, and nothing else was\n")
+        main(["check"])
+        assert "warning: out is not as it was built, inputs/report.toml" in capsys.readouterr().out
+
+
 def test_inputs_that_were_changed_are_no_part_of_a_crate(out: Path) -> None:
     (out.parent / "report.toml").write_text("title = 'Another'")
     with pytest.raises(OutputError, match=r"'report.toml' was changed after it was built"):

@@ -296,6 +296,12 @@ def test_what_somebody_did_to_an_output_is_a_warning(gauge: Path, run: Run) -> N
     manifest.unlink()
     manifest.mkdir()
     assert said in run("check", "gauge")[1]
+    manifest.rmdir()
+    assert (
+        "manifest.json" not in run("check", "gauge")[1]
+    )  # of a folder that no build has written nothing is said
+    (gauge / "out" / "values.json").write_text("mine")
+    assert said.replace("damaged", "missing") in run("check", "gauge")[1]
 
 
 def test_nothing_is_built_among_the_files_of_others(gauge: Path, run: Run) -> None:

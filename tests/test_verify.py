@@ -99,6 +99,15 @@ def test_an_input_that_changed_and_what_it_moves(campaign: Path, capsys: pytest.
     assert hashes(campaign) == before
 
 
+def test_other_ends_of_lines_are_told(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As where Git changes them on its way to Windows."""
+    file = campaign / "measurements.csv"
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    assert main(["verify", str(campaign)]) == 1
+    out = capsys.readouterr().out
+    assert "measurements.csv was changed, in the ends of its lines alone: '* -text' in .gitattributes" in out
+
+
 def test_a_library_and_a_source_that_changed(campaign: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     versions, sums = provenance.versions(), provenance.sources()
     monkeypatch.setattr(stages, "versions", lambda: versions | {"numpy": "99.0"})
