@@ -99,6 +99,9 @@ def _table() -> dict[str, tuple[Fraction, Dimension]]:
         ("Wb", " m", 0, of(kg=1, m=2, s=-2, A=-1)),
         ("T", " mu", 0, of(kg=1, s=-2, A=-1)),
         ("H", " mu", 0, of(kg=1, m=2, s=-2, A=-2)),
+        ("L", " muµμ", -3, of(m=3)),
+        ("l", " muµμ", -3, of(m=3)),
+        ("bar", " m", 5, of(kg=1, m=-1, s=-2)),
     )
     table: dict[str, tuple[Fraction, Dimension]] = {}
     for symbol, letters, power, dimension in families:
@@ -118,11 +121,13 @@ def _table() -> dict[str, tuple[Fraction, Dimension]]:
         "rpm": (_PI / 30, of(s=-1)),
         "in": (Fraction(254, 10000), of(m=1)),
         "ft": (Fraction(3048, 10000), of(m=1)),
-        "L": (Fraction(1, 1000), of(m=3)),
+        "dm": (Fraction(1, 10), of(m=1)),
+        "t": (Fraction(1000), of(kg=1)),
         "min": (Fraction(60), of(s=1)),
         "h": (Fraction(3600), of(s=1)),
         "sec": (Fraction(1), of(s=1)),
-        "bar": (Fraction(10**5), of(kg=1, m=-1, s=-2)),
+        "d": (Fraction(86400), of(s=1)),
+        "hPa": (Fraction(100), of(kg=1, m=-1, s=-2)),
         "atm": (Fraction(101325), of(kg=1, m=-1, s=-2)),
         "mmHg": (Fraction(133322387415, 10**9), of(kg=1, m=-1, s=-2)),
         "kgf": (Fraction(980665, 10**5), of(kg=1, m=1, s=-2)),
