@@ -279,6 +279,12 @@ def test_a_word_that_is_positive_is_not_declared_otherwise(
     assert "low=-5, high=9: y is positive, as its word says; with positive=False in its Quantity" in told
 
 
+def test_what_may_be_zero_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "y", gauge_of(tmp_path, "1 2", "0 m")]) == 2
+    assert "y is out of range: '0'" in capsys.readouterr().err
+    assert main(["show", "y", gauge_of(tmp_path, "1 2", "0 m", bounds=", low=0")]) == 0
+
+
 def test_the_ends_that_a_word_has_hold_of_the_data(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -254,8 +254,13 @@ class ExcelPrinter(Printer):
         pairs = [(self._print(body), condition) for body, condition in expr.args]
         text = pairs.pop()[0] if pairs[-1][1] == True else "NA()"  # noqa: E712 - sympy's true
         for body, condition in reversed(pairs):
-            text = f"IF({self._print(condition)},{body},{text})"
+            text = f"IF({self._held(condition)},{body},{text})"
         return text
+
+    def _held(self, condition: Basic) -> str:
+        """Whether a condition holds; one on a sum does not where a row has no value, which is an error."""
+        text = self._print(condition)
+        return f"IFERROR({text},FALSE())" if condition.has(_Taken) else str(text)
 
     def _print_Relational(self, expr: Expr) -> str:
         relation = {"==": "=", "!=": "<>"}.get(expr.rel_op, expr.rel_op)

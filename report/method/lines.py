@@ -216,7 +216,7 @@ def _let_in(word: Quantity, bounds: Bounds) -> Bounds:
     if word.positive and any(end is not None and end < 0 for _, end in ends):
         said = ", ".join(f"{name}={end:g}" for name, end in ends if end is not None)
         raise SheetError(f"{said}: {word.name} is positive, as its word says; with {_ANY_SIGN} it is not")
-    if word.positive and not bounds.low:
+    if word.positive and bounds.low is None:  # low=0 lets 0 in, where formulas have the same value or none
         bounds = replace(bounds, low=0, low_open=True)
     if word.low is not None and (bounds.low is None or bounds.low < word.low):
         bounds = replace(bounds, low=word.low, low_open=False)

@@ -130,3 +130,52 @@ def test_a_line_with_errors_in_both_variables(tmp_path: Path, require: Callable[
         assert found.cells > 1000
         slopes.add(values.scalar("b"))
     assert len(slopes) == 3
+
+
+GROWTH = '''"""A growth."""
+
+from sympy import log
+
+from loopsheet import Method, fit, measured, unknown
+
+
+class Growth(Method, rows="points"):
+    """By a logarithm, from a start at which whole steps leave its domain."""
+
+    x = measured("m", "place", positive=True)
+    y = measured("V", "voltage")
+    a = unknown("size", "V", start=5)
+    b = unknown("rate", "1/m", start=20)
+    curve = fit(y, a * log(1 + b * x))
+'''
+READINGS = (0.605, 1.045, 1.431, 1.742, 2.019, 2.263, 2.479, 2.671, 2.845, 3.004)
+
+
+def test_a_step_that_leaves_the_domain_is_too_long_in_a_worksheet_too(
+    tmp_path: Path, require: Callable[..., str]
+) -> None:
+    """The sum of squares there has no value, and nothing that followed had one."""
+    folder = tmp_path / "growth"
+    folder.mkdir()
+    rows = "".join(f"{n},{n / 2:.1f},{y:.3f}\n" for n, y in enumerate(READINGS, start=1))
+    (folder / "workbook.py").write_text(GROWTH)
+    (folder / "measurements.csv").write_text(f"point,x [m],y [V]\n{rows}")
+    (folder / "report.toml").write_text(
+        'title = "Growth"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
+    )
+    book = spreadsheets.deliver(folder, drawn=False)
+    every: dict[str, spreadsheets.Edits] = {
+        "as it is": {}, "another": {("y", 4): 1.9}, "one that is missing": {("y", 3): None},
+        "all but one": {("y", row): None for row in range(1, 10)},
+    }  # fmt: skip
+    read = spreadsheets.recalculate(
+        require("soffice", "libreoffice"),
+        tmp_path / "office",
+        {name: book.edited(edits) for name, edits in every.items()},
+    )
+    for name, edits in every.items():
+        values = book.values(edits)
+        assert np.isfinite(values.scalar("b")) == (name != "all but one")
+        wrong = spreadsheets.compare(book, values, read[name]).wrong
+        of_rounding = ("_pass_", "curve_d", "curve_step")  # the last steps
+        assert [line for line in wrong if not any(each in line for each in of_rounding)] == [], name
