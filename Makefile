@@ -21,13 +21,14 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses $(WORKER
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help report test campaigns codes seen mutants bench docs wheel lock clean
+.PHONY: help report test lint campaigns codes seen mutants bench docs wheel lock clean
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 
 help:
 	@echo 'make report      build the report of the shipped paper into $(OUT)/'
 	@echo 'make test        ruff, mypy and all tests, with a few of the campaigns that are drawn at random'
+	@echo 'make lint        ruff and mypy alone, with all that tests need set up'
 	@echo 'make campaigns   all of these campaigns, and what was found in them (SEED=7: others)'
 	@echo 'make codes       run cards in five simulation codes, a gigabyte, and in Yade and LIGGGHTS if there'
 	@echo "make seen        the page's scripts or the paper's report were changed and looked at: they are right"
@@ -44,11 +45,13 @@ report: $(VENV)/.runtime
 	$(BIN)/loopsheet build paper --out '$(OUT)'
 	@echo 'Look at $(abspath $(OUT))/report.html'
 
-test: $(VENV)/.test .mypy_root/loopsheet
+test: lint
+	$(PYTEST)
+
+lint: $(VENV)/.test .mypy_root/loopsheet
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy -p loopsheet
-	$(PYTEST)
 
 campaigns: $(VENV)/.test
 	$(PYTEST) -m campaigns --campaigns all

@@ -1,5 +1,13 @@
 """loopsheet: measured columns and published equations in, a report that can be refereed out."""
 
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # which imports much
+    from .report.loaded import load
+    from .report.messages.errors import LoopsheetError
+    from .report.method.words import *
+
 __version__ = "0.1.0"
 
 __all__ = [
@@ -40,7 +48,8 @@ __all__ = [
 def __getattr__(name: str) -> object:
     """What declares a method, what loads a report and what that raises, once asked for: it imports much."""
     if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        said = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(said, name=name, obj=sys.modules[__name__])
     if name == "load":
         from .report.loaded import load
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Set
 
-_WORDS = {"constant", "fit", "given", "let", "measured", "pairs", "root", "unknown"}
-"""What declares a name."""
+from .. import __all__
+
+_WORDS = {*__all__} - {"load", "LoopsheetError", "Method"}
+"""What a method is written with: what is made of them has no number yet."""
 _OF_NUMBERS = {"cmath", "math", "numpy", "scipy", "statistics"}
 _CALCULUS = {
     *("diff", "idiff", "Derivative", "integrate", "Integral", "limit", "series", "subs", "xreplace"),
@@ -88,11 +90,11 @@ def _of_body(method: ast.ClassDef, foreign: Set[str], calculus: Set[str]) -> Ite
         for node in ast.walk(statement):
             match node:
                 case ast.If(test=test) | ast.IfExp(test=test) | ast.While(test=test):
-                    wrong = _names(test) & declared
+                    wrong = _unknown(test, declared)
                 case ast.BoolOp():
-                    wrong = _names(node) & declared
+                    wrong = _unknown(node, declared)
                 case ast.Compare(ops=ops) if any(isinstance(each, _COMPARED) for each in ops):
-                    wrong = _names(node) & declared
+                    wrong = _unknown(node, declared)
                 case ast.Call() if _root(ast.unparse(node.func)) in foreign:
                     given = (*node.args, *(each.value for each in node.keywords))
                     if set[str]().union(*map(_names, given)) & declared:
@@ -106,8 +108,16 @@ def _of_body(method: ast.ClassDef, foreign: Set[str], calculus: Set[str]) -> Ite
                     continue
             if wrong:
                 yield node.lineno, "Python decides here, before there are numbers", NO_IF
-        if isinstance(statement, ast.Assign) and _names(statement.value) & (declared | _WORDS):
-            declared |= {name for target in statement.targets for name in _names(target)}
+        if isinstance(statement, ast.Assign | ast.AnnAssign) and statement.value is not None:
+            targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+            if _unknown(statement.value, declared):
+                declared |= set[str]().union(*map(_names, targets))
+
+
+def _unknown(node: ast.AST, declared: Set[str]) -> bool:
+    """Whether it is made of what has no number yet: of what is declared, or of what a word returns."""
+    calls = (each.func for each in ast.walk(node) if isinstance(each, ast.Call))
+    return bool(_names(node) & declared) or any(isinstance(f, ast.Name) and f.id in _WORDS for f in calls)
 
 
 def _names(node: ast.AST) -> set[str]:

@@ -20,7 +20,7 @@ from .inputs.folders import report_folder
 from .messages.errors import LoopsheetError, listing, suggest
 from .quantity import behind
 from .result.findings import checks
-from .study import Study
+from .study import Recipe, Study
 from .views.escape import html
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Estimates(NDArrayOperatorsMixin):
         Estimates and standard uncertainties, in that unit; of a scalar both have no axis. NaN where there is
         none.
     index : tuple of str
-        What the rows are called: ``2``, ``1-2``; empty for a scalar.
+        What the rows are called: ``2``, ``1-2``; empty for a scalar, of one row alone that row.
     names : tuple of str
         The same with the names that rows have in the table of measurements, ``2 (S-17)``; the words of
         groups.
@@ -73,11 +73,15 @@ class Estimates(NDArrayOperatorsMixin):
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         """The values, for NumPy; of a scalar without an axis."""
-        return np.array(self.value, dtype=dtype) if copy else np.asarray(self.value, dtype=dtype)
+        return np.array(self.value, dtype=dtype, copy=copy)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **more: Any) -> Any:
         """What a function of NumPy, or an operator, makes of the values."""
         values = (each.value if isinstance(each, Estimates) else each for each in inputs)
+        if any(isinstance(each, Estimates) for each in more.get("out", ())):
+            raise TypeError(
+                f"{self.name} stays as it was computed: {self.name} = {self.name} + 1, say, is an array"
+            )
         return getattr(ufunc, method)(*values, **more)
 
     def __bool__(self) -> bool:
@@ -115,6 +119,10 @@ class Estimates(NDArrayOperatorsMixin):
         at = places if len(places) > 1 else places[0]
         return replace(self, value=np.asarray(self.value[at]), u=np.asarray(self.u[at]), **own)
 
+    def __str__(self) -> str:
+        """Its cells as the report shows them."""
+        return ", ".join(self.texts)
+
     def __format__(self, how: str) -> str:
         """The value of a scalar with a format, ``{x:.2f}``; without one what it is."""
         return format(float(self.value), how) if how else str(self)
@@ -143,6 +151,14 @@ class Loaded(Mapping[str, Estimates]):
         self._study, self._report = study, (report := study.computed)
         self.title = report.title
         self.headline = tuple(name for name in report.workbook.headline if name in report.sheet)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process, or a copy, reads the same bytes again."""
+        return _again, (self._study.recipe,)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """What a notebook proposes behind ``report[``."""
+        return list(self)
 
     @cached_property
     def findings(self) -> tuple[str, ...]:
@@ -215,6 +231,10 @@ class Loaded(Mapping[str, Estimates]):
         said = Markup("").join(Markup("<p>{}</p>").format(html(line)) for line in self.findings)
         results = _table([self[name] for name in self.headline])
         return Markup("<p><b>{}</b></p>{}{}").format(html(self.title), Markup(results), said)
+
+
+def _again(recipe: Recipe) -> Loaded:
+    return Loaded(Study.of(recipe))
 
 
 def load(folder: str | Path) -> Loaded:

@@ -201,6 +201,8 @@ def _hint(error: BaseException) -> str:
             return 'a number has no unit; what is declared has, given("mm", ...) and unknown("length", "mm")'
         case SheetError():
             return ""
+        case NameError(name="math" | "cmath" | "np" | "numpy"):
+            return OF_SYMPY
         case NameError(name=name) if name in (*FUNCTIONS, "sqrt", "pi"):
             return f"write above: from sympy import {name}"
         case NameError(name=name) if name in _words():
@@ -238,7 +240,7 @@ def _hint(error: BaseException) -> str:
             return f"'{own}' is a word of Python: call it {own}_, with latex=... as it is printed"
         case SyntaxError() if re.search(r"U\+(2212|2013)", error.msg):
             return "write the minus sign as an ordinary hyphen"
-    return "" if isinstance(error, SyntaxError) else _HINT
+    return ""
 
 
 def _words() -> list[str]:

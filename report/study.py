@@ -132,7 +132,7 @@ class Study:
 
     @_part("proofs")
     def proof_data(self) -> dict[str, Any]:
-        """The same as data: what another process may tell."""
+        """The proofs and errata of the algebra as data: what another process may tell."""
         from .proofs import as_data, proved
 
         about = self.inputs.about_source

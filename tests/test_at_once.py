@@ -36,6 +36,8 @@ class Ohm(Method):
         "R = let(U, 'one') if Q else let(i, 'other')",
         "if Q != 10: R = let(U, 'one')",
         "while U: break",
+        "R = let(U * (1 if count() == 3 else 2), 'count')",
+        "if sum(i) and mean(i) == 2: R = let(U, 'one')",
     ],
 )
 def test_it_is_told_with_its_line(line: str) -> None:
@@ -50,10 +52,18 @@ def test_it_is_told_with_its_line(line: str) -> None:
         "R = let(max(U, Q), 'the greater')",
         "R = [let(n * U, 'times') for n in (1, 2) if n == 2 or n != 3][0]",
         "c = 3 if __name__ else 4",
+        "R = [let(rows * U, 'times') for rows in (1, 2) if rows == 2][0]",
     ],
 )
 def test_numbers_are_pythons(line: str) -> None:
     assert not list(at_once(f"{HEAD}    {line}\n".encode()))
+
+
+def test_what_words_return_has_no_number_yet() -> None:
+    """Of three readings `n == 3` was False."""
+    for said in ("n = count()", "n: object = total(1)", "first, n = pairs()"):
+        code = f"{HEAD}    {said}\n    f = 1 if n == 3 else 2\n"
+        assert {at for at, _, _ in at_once(code.encode())} == {12}
 
 
 def test_all_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,6 +22,7 @@ import pytest
 
 from loopsheet.report.archive.wheel import wheel as own_wheel
 from loopsheet.report.machine.provenance import sources
+from loopsheet.report.messages.catalogue import CATALOGUE
 
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -526,3 +527,24 @@ def test_who_walks_through_the_house_finds_what_is_named(path: str, name: str) -
 
 def test_the_walks_name_places() -> None:
     assert len(WALKS) > 25
+
+
+NAMED = re.findall(
+    r"`((?:report|derivations|tests|templates|docs|benchmarks|data)/[\w/.-]+)[`:]",
+    (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"),
+)
+
+
+@pytest.mark.parametrize("name", dict.fromkeys(NAMED))
+def test_what_contributors_are_told_of_is_there(name: str) -> None:
+    assert (ROOT / name).exists()
+
+
+def test_every_code_of_an_error_is_explained() -> None:
+    named = {
+        code
+        for file in (ROOT / "report").rglob("*.py")
+        for code in re.findall(r'"(LS\d{3})"', file.read_text("utf-8"))
+    }
+    assert named <= CATALOGUE.keys()
+    assert len(named) > 100

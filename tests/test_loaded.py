@@ -1,5 +1,7 @@
 """What a report is to Python: its columns are arrays, and a scalar is a number."""
 
+import copy
+import pickle
 from pathlib import Path
 
 import grouped
@@ -38,6 +40,32 @@ def test_columns_behave_as_arrays_do() -> None:
         len(mean)
     with pytest.raises(ValueError, match="ambiguous"):
         bool(each)
+
+
+def test_what_was_computed_stays_as_it_is() -> None:
+    mean, each = (loopsheet.load("paper")[name] for name in ("alpha_mean", "alpha"))
+    with pytest.raises(TypeError, match="alpha stays as it was computed: alpha = alpha"):
+        each += 1
+    with pytest.raises(TypeError, match="stays as it was computed"):
+        np.add(each, 1, out=each)
+    assert np.asarray(each, copy=False) is each.value
+    with pytest.raises(ValueError, match="copy"):
+        np.asarray(each, dtype=np.float32, copy=False)
+    assert str(mean) == f"{mean}" == "1.3026"
+
+
+def test_another_process_has_the_same_report() -> None:
+    paper = loopsheet.load("paper")
+    for again in (pickle.loads(pickle.dumps(paper)), copy.deepcopy(paper)):
+        assert again["alpha"].value.tolist() == paper["alpha"].value.tolist()
+        assert again.title == paper.title
+    assert "alpha_mean" in paper._ipython_key_completions_()
+
+
+def test_a_name_that_is_misspelt_is_told_with_the_nearest() -> None:
+    with pytest.raises(AttributeError) as told:
+        loopsheet.laod  # type: ignore[attr-defined]  # noqa: B018
+    assert (told.value.name, told.value.obj) == ("laod", loopsheet)  # by which Python proposes `load`
 
 
 def test_a_row_has_its_number() -> None:

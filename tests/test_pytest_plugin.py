@@ -13,8 +13,8 @@ import pytest
 from loopsheet.report.engines import ENGINES
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.inputs.published import PublishedValue
-from loopsheet.report.pytest_plugin import _is_ours
-from loopsheet.report.result.findings import names_of
+from loopsheet.report.pytest_plugin import FolderChecks, _is_ours
+from loopsheet.report.result.findings import checks, names_of
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -57,6 +57,15 @@ def test_every_check_is_a_test(campaign: Path) -> None:
     assert "steel/report.toml::published::alpha[1-2]" in ids
     assert "steel/report.toml::table::Table 2" in ids
     assert len(ids) == len(set(ids)) == 3 + 86 + 27 + 5 + 3 + 12 + 1
+
+
+@pytest.mark.parametrize("name", ["gum_h1", "gum_h3", "misra1a", "worked_example", "ea_s9"])
+def test_a_test_is_planned_for_every_check(name: str) -> None:
+    """What is asked for by name alone, and what is found: a check that only one of them has is never told."""
+    folder = FolderChecks(PAPER.parent / name, own_code=True)
+    planned = {(kind, each) for kind, names in folder.plan().items() for each in names if kind != "engine"}
+    proofs = {("proof", equation.label) for equation in folder.study.ledger.equations()}
+    assert planned == proofs | {(check.kind, check.name) for check in checks(folder.study.refereed)}
 
 
 def test_the_inputs_in_a_crate_are_tests_where_their_folder_is_not(campaign: Path) -> None:

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..views import FORMATS
 from .common import FINDINGS, OK, Progress, folder_argument, keeping_arguments, named, say, told
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         metavar="FORMATS",
-        help="html, latex, xlsx, pdf, json; json comes with any (default: all but pdf, which only where one "
+        help=f"{', '.join(FORMATS)}; json comes with any (default: all but pdf, which only where one "
         "was built before, and no workbook that is too large)",
     )
     parser.add_argument(
@@ -80,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
     names = {path.name: path for path in found.files}
     first = next(
         names[n]
-        for n in ("report.html", "report.pdf", "report.tex", "report.xlsx", "values.json", "manifest.json")
+        for n in ("report.html", "report.pdf", *(file for _, file, _ in FORMATS.values()), "manifest.json")
         if n in names
     )
     say(f"{len(found.files)} files in {out}; look at {first}")
