@@ -20,7 +20,7 @@ from .thornton import THORNTON
 
 MODELS = (HERTZ, LANKARANI_1994, JOHNSON, THORNTON, POWER_LAW)
 BESIDE = {model.name: compared(model, f"(L{number})") for number, model in enumerate(MODELS, 191)}
-"""Each beside the tests; nothing is numbered after these, so that there may be more."""
+"""Each beside the tests; a new model is the last of them, and there are numbers up to (L200) for it."""
 
 _PREMISES = [
     "(1)",

@@ -12,7 +12,7 @@ from ..messages.errors import Location, UsageError, diagnose, listing
 PAPER = Path(__file__).resolve().parents[2] / "data" / "soft_steel"
 """The shipped campaign."""
 EXAMPLES = tuple(path.parent for path in sorted(PAPER.parent.glob("*/report.toml")))
-"""All shipped folders, of which each is published."""
+"""All shipped folders."""
 WORD = "paper"
 """What a user calls it; a folder of that name is written ``./paper``."""
 OUT = "out"
