@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -111,7 +112,9 @@ class Space:
         """
         quantity, whole = self.vocabulary.find(self.names.get(symbol, symbol)), bool(symbol.is_integer)
         if quantity is not None and (quantity.positive or not symbol.is_positive):
-            (low, high), whole = quantity.span, whole or quantity.whole
+            low, high = quantity.span
+            if quantity.whole:
+                low, high, whole = math.ceil(low), math.floor(high) + 1, True
         elif whole:
             low, high = (1.0 if symbol.is_positive else -9.0), 9.0
         else:

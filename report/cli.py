@@ -173,6 +173,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except KeyboardInterrupt as error:
             print("\nstopped; nothing was half-written", file=sys.stderr)
             return 128 + getattr(error, "number", signal.SIGINT)
+        except SystemExit:  # of help
+            told.flush()
+            raise
 
 
 def _run(arguments: Sequence[str] | None) -> int:

@@ -245,7 +245,7 @@ def test_a_whole_number_is_drawn_as_one(tmp_path: Path) -> None:
     code = (
         "from sympy import cos, pi\nfrom loopsheet import Method, claim, given, let\n"
         "class Turns(Method):\n    n = given('1', 'turns', whole=True)\n"
-        "    m = given('1', 'one or two', whole=True, low=1, high=2)\n"
+        "    m = given('1', 'one or two', whole=True, low=0.5, high=2.5)\n"
         "    c = let(cos(2 * pi * n), 'cosine')\n    claim(c, 1, 'whole turns')\n"
         "    claim(cos(pi * n), 1, 'half turns')\n    claim((m - 1) * (m - 2), 0, 'one or two')\n"
         "    claim(m, 1, 'one')\n"

@@ -336,7 +336,10 @@ def test_new_makes_a_folder_that_builds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("streams", ["| true", "2>&1 | true", ">&-", "2>&-", "<&- >&- 2>&-", "2>/dev/full"])
-@pytest.mark.parametrize(("asked", "code"), [("show x", 0), ("show alhpa", 2), ("show alpha", 1)])
+@pytest.mark.parametrize(
+    ("asked", "code"),
+    [("show x", 0), ("show alhpa", 2), ("show alpha", 1), ("--version", 0), ("show --help", 0)],
+)
 def test_who_listens_changes_no_exit_code(
     asked: str, code: int, streams: str, campaign: Path, require: Callable[..., str]
 ) -> None:
@@ -344,10 +347,9 @@ def test_who_listens_changes_no_exit_code(
     if code == 1:
         file = campaign / "measurements.csv"
         file.write_text(file.read_text(encoding="utf-8").replace(",51.03", ","), encoding="utf-8")
-    command = f"{sys.executable} -m loopsheet {asked} {streams}; exit ${{PIPESTATUS[0]}}"
-    done = subprocess.run(
-        [require("bash"), "-c", command], cwd=campaign, capture_output=True, text=True, check=False
-    )
+    asked = f"env -u PYTHONUNBUFFERED {sys.executable} -m loopsheet {asked}"
+    command = [require("bash"), "-c", f"{asked} {streams}; exit ${{PIPESTATUS[0]}}"]
+    done = subprocess.run(command, cwd=campaign, capture_output=True, text=True, check=False)
     assert done.returncode == code
     assert "Traceback" not in done.stderr
     assert "Exception" not in done.stderr

@@ -276,13 +276,41 @@ def test_a_word_that_is_positive_is_not_declared_otherwise(
 ) -> None:
     assert main(["check", gauge_of(tmp_path, "1 2", bounds=", low=-5, high=9")]) == 2
     told = capsys.readouterr().err
-    assert "low=-5, high=9: y is positive, as its word says; with positive=False in its Quantity" in told
+    assert "y is positive, as its word says: no end is -5; positive=False in its Quantity lets it be" in told
 
 
 def test_what_may_be_zero_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "y", gauge_of(tmp_path, "1 2", "0 m")]) == 2
     assert "y is out of range: '0'" in capsys.readouterr().err
     assert main(["show", "y", gauge_of(tmp_path, "1 2", "0 m", bounds=", low=0")]) == 0
+
+
+@pytest.mark.parametrize(
+    ("unit", "y", "low", "code"),
+    [
+        ("mm", "7.0 mm", ", low=0.001, high=0.01", 0),
+        ("mm", "0.7 mm", ", low=0.001, high=0.01", 2),
+        ("mm", "-7 mm", "", 2),
+        ("degC", "-5.0 degC", "", 0),
+        ("degC", "-300 degC", "", 2),
+        ("1", "1.5", ", whole=True", 2),
+        ("1", "2", ", whole=True", 0),
+    ],
+)
+def test_a_word_keeps_its_data_within_its_ends_in_any_unit(
+    unit: str, y: str, low: str, code: int, tmp_path: Path
+) -> None:
+    code_ = (
+        "from loopsheet import Method, given, let\nfrom loopsheet.derivations.equation import Ledger\n"
+        "from loopsheet.derivations.vocabulary import Quantity, Vocabulary\n\n"
+        f"W = Vocabulary(Quantity('y', 'a datum', '{unit}', 'y%s'{low}))\n\n\n"
+        "class Own(Method, ledger=Ledger((), vocabulary=W)):\n    'Own.'\n\n    y = given(W['y'])\n"
+        "    z = let(2 * y, 'twice')\n"
+    )
+    (tmp_path / "workbook.py").write_text(code_, encoding="utf-8")
+    toml = f'workbook = "workbook.py"\n[parameters]\ny = "{y}"\n'
+    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    assert main(["show", "z", str(tmp_path)]) == code
 
 
 def test_the_ends_that_a_word_has_hold_of_the_data(

@@ -175,6 +175,15 @@ def test_what_is_saved_is_built_again(tmp_path: Path) -> None:
         watch.process.wait()
 
 
+def test_it_ends_when_nobody_reads_what_it_tells(gauge: Path) -> None:
+    command = [sys.executable, "-m", "loopsheet", "watch", str(gauge), "--to", "json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as watching:
+        assert watching.stdout is not None
+        assert watching.stdout.readline()
+        watching.stdout.close()
+        assert watching.wait(timeout=300) == 0
+
+
 def test_what_is_looked_at(tmp_path: Path) -> None:
     (tmp_path / "data").mkdir()
     (tmp_path / "a.csv").write_text("1")

@@ -172,7 +172,8 @@ def read_value(
         return None
     if unit is not None and not declared.bounds.allow(printed.value):
         allowed = f"{declared.bounds.said(declared.unit)} ({declared.meaning})"
-        said = {"name": declared.name, "text": text, "allowed": allowed, "beyond": declared.beyond}
+        beyond = declared.beyond if printed.value <= 0 else ""
+        said = {"name": declared.name, "text": text, "allowed": allowed, "beyond": beyond}
         findings.add("LS406", at, **said, unit=unit.text)
         return None
     return printed

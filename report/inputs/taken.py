@@ -315,7 +315,9 @@ class _Reader:
             value, name = self.value(label), address(self.of.name, () if label == self.index else label)
             if not self.of.bounds.allow(value):
                 words = {"text": repr(value), "unit": coherent(parse_unit(self.of.unit)), "allowed": allowed}
-                self.findings.add("LS406", self.at, name=name, **words, beyond=self.of.beyond)
+                self.findings.add(
+                    "LS406", self.at, name=name, **words, beyond=self.of.beyond if value <= 0 else ""
+                )
 
     def tells(self, labels: Sequence[Index]) -> None:
         """Find numbers of which nobody knows what their uncertainty comes from."""

@@ -18,16 +18,21 @@ def opened() -> None:
 
 
 class Outlet:
-    """A stream that takes all there is to tell; what nobody reads any more, nobody gets.
+    """A stream that goes on taking what is told when nobody reads it any more, and drops that.
 
     Parameters
     ----------
     lost : type of exception
-        What a reader that is gone raises. Of what a disk lacks room for somebody has to be told.
+        What a reader that is gone raises. Of a disk that is full somebody has to be told.
+
+    Attributes
+    ----------
+    is_heard : bool
+        Whether there is a reader still, as far as that is known.
     """
 
     def __init__(self, stream: TextIO, lost: type[OSError] = BrokenPipeError) -> None:
-        self._stream, self._lost = stream, lost
+        self._stream, self._lost, self.is_heard = stream, lost, True
 
     def write(self, text: str) -> int:
         """Write text, and tell how much of it was taken: all."""
@@ -46,6 +51,7 @@ class Outlet:
 
     def drop(self) -> None:
         """Write to nobody from now on; Python itself would write once more, and complain, while it closes."""
+        self.is_heard = False
         nobody = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nobody, self._stream.fileno())
         os.close(nobody)

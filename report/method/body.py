@@ -33,6 +33,7 @@ from .lines import (
     checked_label,
     exact,
     in_si,
+    let_in,
     none_of,
     refuse_zero,
     size_of,
@@ -453,6 +454,8 @@ class MethodBody(dict[str, Any]):
         bounds = said.bounds.within(size.scale, size.zero)
         if size.zero:  # nothing is colder than 0 K
             bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
+        if said.quantity:
+            bounds = let_in(said.quantity, bounds)
         own = name, said.unit, said.asked or said.meaning, bounds
         rows = self.axis if said.of is None else said.of
         if rows not in self.row_axes:

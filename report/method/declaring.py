@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -30,13 +31,15 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     Nothing else is let in of an input; a parameter of a fit may be found elsewhere.
     """
     low, high = bounds.low, bounds.high
+    if bounds.integer:  # the first and the last that is allowed
+        low = low if low is None else math.floor(low) + 1 if bounds.low_open else math.ceil(low)
+        high = high if high is None else math.ceil(high) - 1 if bounds.high_open else math.floor(high)
     known = (low, high) if is_sure else (None, None)
     if low is None or high is None:
         end = next((each for each in (low, high) if each is not None), 0.0)
         far = max(abs(end), FEW if bounds.integer else 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
-    span = low, high + bounds.integer  # of which the whole part counts
-    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), span
+    own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
     return Quantity(*own, bool(column.positive), "", *known, whole=bounds.integer)
 
 

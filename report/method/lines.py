@@ -80,7 +80,6 @@ class InputLine(Declaration):
         if isinstance(self.unit, Quantity):
             object.__setattr__(self, "quantity", self.unit)
             object.__setattr__(self, "meaning", self.meaning or self.unit.meaning)
-            object.__setattr__(self, "bounds", _let_in(self.unit, self.bounds))
             object.__setattr__(self, "unit", self.unit.unit)
         super().__post_init__()
         if not self.meaning.strip():
@@ -210,19 +209,19 @@ def with_unit(name: str, sought: UnknownLine) -> UnknownLine:
     return replace(sought, column=column, start=start, bounds=bounds)
 
 
-def _let_in(word: Quantity, bounds: Bounds) -> Bounds:
-    """What is allowed of an input, without what its word does not let in: formulas and proofs count on it."""
-    ends = (("low", bounds.low), ("high", bounds.high))
-    if word.positive and any(end is not None and end < 0 for _, end in ends):
-        said = ", ".join(f"{name}={end:g}" for name, end in ends if end is not None)
-        raise SheetError(f"{said}: {word.name} is positive, as its word says; with {_ANY_SIGN} it is not")
+def let_in(word: Quantity, bounds: Bounds) -> Bounds:
+    """What is allowed of an input, without what its word does not let in: formulas count on that. In SI."""
+    below = [end for end in (bounds.low, bounds.high) if end is not None and end < 0]
+    if word.positive and below:
+        said = f"{word.name} is positive, as its word says: no end is {below[0]:g}; {_ANY_SIGN} lets it be"
+        raise SheetError(said)
     if word.positive and bounds.low is None:  # low=0 lets 0 in, where formulas have the same value or none
         bounds = replace(bounds, low=0, low_open=True)
     if word.low is not None and (bounds.low is None or bounds.low < word.low):
         bounds = replace(bounds, low=word.low, low_open=False)
     if word.high is not None and (bounds.high is None or bounds.high > word.high):
         bounds = replace(bounds, high=word.high, high_open=False)
-    return bounds
+    return replace(bounds, integer=bounds.integer or word.whole)
 
 
 def refuse_zero(name: str, said: Declaration, size: ParsedUnit) -> None:

@@ -69,11 +69,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _watch(folder: Path, result: Path, build: Callable[[], Iterable[str]]) -> None:
-    """Build whenever a file of the folder, or one that was read last, is another, or the result is gone."""
+    """Build whenever a file of the folder, or one that was read last, is another, or the result is gone.
+
+    To the end, which is when it is stopped, or when nobody reads what it tells.
+    """
     read: set[str] = set()
     seen: Look | None = None
     there = False
-    while True:
+    while getattr(sys.stdout, "is_heard", True):
         now = _look(folder, read)
         if now == seen and result.exists() >= there:
             time.sleep(PAUSE)
