@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from .archive.crate import altered
 from .files.manifest import NAME, manifest_of
 from .inputs.folders import PAPER, changed, is_report, output
 from .messages.diagnostics import Check
@@ -52,21 +53,12 @@ def _touched(folder: Path) -> Iterator[Check]:
             said = (
                 f"{what}, so that nobody can tell whether {out.as_posix()} is as it was built: build it again"
             )
-    elif names := sorted({*changed(out, manifest.outputs), *changed(out, _of_crate(out))}):
+    elif names := sorted({*changed(out, manifest.outputs), *altered(out)}):
         after = listing(names, last="and")
         said = f"{out.as_posix()} is not as it was built, {after}: 'loopsheet verify' tells more"
     if said:
         at = Location((folder / "report.toml").as_posix())
         yield Check("outputs", f"{folder.as_posix()} as built", True, said, at, note="warning")
-
-
-def _of_crate(out: Path) -> dict[str, str]:
-    """What a crate added to an output, if it is one."""
-    if not (out / "ro-crate-metadata.json").exists():
-        return {}
-    from .archive.crate import added
-
-    return {name.as_posix(): digest for name, digest in added(out).items()}
 
 
 def _changed(folder: Path) -> list[str]:

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from .archive.crate import added
+from .archive.crate import altered
 from .archive.differences import EPS, Differences, compare
 from .build import build
 from .files.form import Index
 from .files.manifest import Manifest, read_manifest
 from .files.values import NAME, read_result
-from .inputs.folders import built_from, changed
+from .inputs.folders import built_from
 from .inputs.inputs import Find
 from .machine.kept import nothing_kept
 from .machine.scratch import scratch
@@ -94,7 +94,7 @@ def verify(
             *_same("source", then.sources, now.sources, "the"),
             *_same("library", then.software, now.software, ""),
             *_outputs(out, then, now, rounded),
-            *_of_crate(out),
+            *(Check("output", name, False, f"{name} {_NOT_OF_CRATE}") for name in altered(out)),
             *_moves(differences),
         )
         verdict = _verdict(checks, then, now, differences, rounded, bool(report.exactly))
@@ -166,15 +166,6 @@ def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator
             said = "is the same, byte for byte" if again == was else "is another file when it is built again"
             told = f": {rounded}" if rounded and again != was else ""
             yield Check("output", name, again == was or bool(rounded), f"{name} {said}{told}")
-
-
-def _of_crate(out: Path) -> Iterator[Check]:
-    """Each file that `crate` added to what was built, as it put it there."""
-    files = {name.as_posix(): digest for name, digest in added(out).items()}
-    altered = set(changed(out, files))
-    for name in files:
-        said = _NOT_OF_CRATE if name in altered else "is as the crate has it"
-        yield Check("output", name, name not in altered, f"{name} {said}")
 
 
 def _is_inside(out: Path, file: Path) -> bool:

@@ -232,7 +232,7 @@ def test_a_claim_that_has_no_value_of_these_data_is_told(tmp_path: Path) -> None
     (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
     toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
     (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    for second, told in (("2.0", "(2), quotient, has no value of these data in row 2"), ("2.5", "")):
+    for second, told in (("2.0", "(2), quotient, has no value for these data in row 2"), ("2.5", "")):
         (tmp_path / "m.csv").write_text(f"test,x [m],y [m]\n1,1.0,3.0\n2,2.0,{second}\n", encoding="utf-8")
         study = Study(tmp_path)
         assert all(proof.status.passes for proof in study.proved.proofs)

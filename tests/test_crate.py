@@ -188,14 +188,19 @@ def test_what_was_done_to_a_crate_is_told(
     assert main(verified) == 0
     capsys.readouterr()
     copy = Path("out/inputs/report.toml")
-    for alter in (lambda: copy.write_bytes(copy.read_bytes() + b"# mine"), copy.unlink):
+    metadata = Path("out/ro-crate-metadata.json")
+    for alter, name in (
+        (lambda: copy.write_bytes(copy.read_bytes() + b"# mine"), "inputs/report.toml"),
+        (copy.unlink, "inputs/report.toml"),
+        (lambda: metadata.write_bytes(b"{"), "ro-crate-metadata.json"),
+    ):
         alter()
         assert main(verified) == 1
         told = capsys.readouterr().out
-        assert "inputs/report.toml is not as the crate has it" in told
+        assert f"{name} is not as the crate has it" in told
         assert told.endswith("the outputs were changed after they were built, and nothing else was\n")
         main(["check"])
-        assert "warning: out is not as it was built, inputs/report.toml" in capsys.readouterr().out
+        assert f"warning: out is not as it was built, {name}" in capsys.readouterr().out
 
 
 def test_inputs_that_were_changed_are_no_part_of_a_crate(out: Path) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import datetime
 import hashlib
+import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -19,7 +20,7 @@ from msgspec.structs import replace
 from ..files.crate import Crate, Entity, Reference
 from ..files.form import indented, load
 from ..files.manifest import Manifest, read_manifest
-from ..inputs.folders import INPUTS, built_from
+from ..inputs.folders import INPUTS, built_from, changed
 from ..machine.scratch import scratch
 from ..machine.staging import put
 from ..machine.stopping import unstoppable
@@ -152,6 +153,17 @@ def added(out: Path) -> dict[Path, str]:
     except (LoopsheetError, LookupError):
         metadata = b""  # not of this manifest
     return {**inputs, Path(NAME): hashlib.sha256(metadata).hexdigest()}
+
+
+def altered(out: Path) -> list[str]:
+    """The names of what :func:`write` added to an output folder, and what is not as it was then."""
+    try:
+        json.loads((out / NAME).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return []
+    except (OSError, ValueError):
+        return [NAME]  # of the others nobody can tell
+    return sorted(changed(out, {name.as_posix(): digest for name, digest in added(out).items()}))
 
 
 def _date(text: str) -> str:

@@ -228,7 +228,8 @@ def other_rows(search: Search) -> Iterator[Explained]:
         if isinstance(axis, MemberAxis):
             groups = enumerate(problem.campaign.labels[axis.name])
             own = [row for row, group in groups if (group,) == value.index]
-            yield from _without_one(search, [n], problem.campaign.inputs.on(axis.of.name), own)
+            if len(own) <= MOST_TESTS:
+                yield from _without_one(search, [n], problem.campaign.inputs.on(axis.of.name), own)
             continue
         rows = dict(_rows(problem.campaign, axis))
         yield from _over_rows(search, [n], over_rows(column, axis, list(rows.values()), sheet), list(rows))
