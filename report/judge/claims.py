@@ -70,7 +70,7 @@ def _sentence(
 ) -> str:
     if not off and empty:
         rows = f" in row {', '.join(map(str, empty[0]))}" if empty[0] else ""
-        return f"{claim.label}, {claim.meaning}, has no value for these data{rows}, of which a proof says nothing"
+        return f"{claim.label}, {claim.meaning}, has no value for these data{rows}: no proof tells of that"
     if not off:
         return f"{claim.label} holds of these data"
     address, value = off[0]
