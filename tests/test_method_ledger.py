@@ -325,7 +325,7 @@ def test_what_a_word_says_is_positive_and_is_not_is_told_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["show", "z", gauge_of(tmp_path, "1 2", "1.0 m")]) == 1
-    assert "it gives no positive number here, and z is said to be positive" in capsys.readouterr().out
+    assert "z: outside the domain of (2): it has to be positive" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

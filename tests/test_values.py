@@ -95,7 +95,7 @@ def test_what_is_no_number_or_not_positive_is_outside_the_domain(values: Values)
         f"#DOMAIN! slope_not_positive[1-2]: {told} finite number here"
     )
     assert reasons(values, "gap_not_positive")[:2] == [
-        f"#DOMAIN! gap_not_positive[{row}]: {told} positive number here" for row in (1, 2)
+        f"#DOMAIN! gap_not_positive[{row}]: {OUTSIDE}: it has to be positive" for row in (1, 2)
     ]
 
 

@@ -414,11 +414,9 @@ class Values:
         if empty:
             return f"{outside}: {empty[0]} has no rows"
         if isinstance(rule, Formula):
-            if column.positive:
-                return (
-                    f"{outside}: it gives no positive number here, and {column.name} is said to be positive"
-                )
-            return f"{outside}: it gives no finite number here"
+            return (
+                f"{outside}: it {'has to be positive' if column.positive else 'gives no finite number here'}"
+            )
         if isinstance(rule, Root):
             return f"{outside}: it has no value at an end of the interval of its root, or its root gives none"
         return outside

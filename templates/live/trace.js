@@ -167,7 +167,7 @@ class Trace {
     if (broken?.[name]?.[row]) return requires[broken[name][row] - 1];
     const empty = sums.find((axis) => layouts[axis].size === 0);
     if (!empty && this.columns[name].two) return "it has no value at an end of the interval of its root, or its root gives none";
-    return empty ? `${empty} has no rows` : `it gives no ${positive ? "positive" : "finite"} number here`;
+    return empty ? `${empty} has no rows` : `it ${positive ? "has to be positive" : "gives no finite number here"}`;
   }
 
   // The sentence that a cell without a value shows.
