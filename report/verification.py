@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from .archive.crate import altered
@@ -90,7 +89,7 @@ def verify(
         # What is correctly rounded is the same on every processor.
         rounded = "" if report.exactly else _rounded_otherwise(then, now, differences)
         checks = (
-            *_same("input", then.inputs, now.inputs, "the input", partial(_ends_alone, folder)),
+            *_same("input", then.inputs, now.inputs, "the input", folder),
             *_same("source", then.sources, now.sources, "the"),
             *_same("library", then.software, now.software, ""),
             *_outputs(out, then, now, rounded),
@@ -109,20 +108,16 @@ def _rounded_otherwise(then: Manifest, now: Manifest, found: Differences | None)
     return f"another processor rounds {found.noise} numbers otherwise"
 
 
-def _ends_alone(folder: Path, name: str, was: str) -> bool:
+def _ends_alone(file: Path, was: str) -> bool:
     """Whether a file is what it was but for the ends of its lines."""
-    plain = (folder / name).read_bytes().replace(b"\r\n", b"\n")
+    plain = file.read_bytes().replace(b"\r\n", b"\n")
     return was in (hashlib.sha256(each).hexdigest() for each in (plain, plain.replace(b"\n", b"\r\n")))
 
 
 def _same(
-    kind: str,
-    then: Mapping[str, str],
-    now: Mapping[str, str],
-    what: str,
-    ends_alone: Callable[[str, str], bool] = lambda *_: False,
+    kind: str, then: Mapping[str, str], now: Mapping[str, str], what: str, folder: Path | None = None
 ) -> Iterator[Check]:
-    """A check for each name that there was or is."""
+    """A check for each name that there was or is; `folder`: where their files are."""
     if not then and now:
         yield Check(kind, "all", True, f"the manifest does not say with which {kind}s", skipped=True)
         return
@@ -138,7 +133,8 @@ def _same(
         elif kind == "library":
             yield Check(kind, name, False, f"{said} was {was} and is {is_now}")
         else:
-            yield Check(kind, name, False, f"{said} was changed{_ENDS if ends_alone(name, was) else ''}")
+            ends = _ENDS if folder and _ends_alone(folder / name, was) else ""
+            yield Check(kind, name, False, f"{said} was changed{ends}")
 
 
 def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator[Check]:

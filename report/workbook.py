@@ -74,10 +74,10 @@ class Parameter:
     unit: str
     meaning: str
     bounds: Bounds = field(default_factory=Bounds)
+    beyond: str = ""
+    """`name`, `unit`, `meaning`, `bounds` and `beyond`: as for :class:`Measured`."""
     default: str | None = None
     """The printed value with its unit that holds when it is left out; None: no default."""
-    beyond: str = ""
-    """What is named as in :class:`Measured` is as there."""
 
 
 @dataclass(frozen=True)

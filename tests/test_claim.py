@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from test_method import folder as method_folder
 
 from loopsheet.derivations.proof import prove
 from loopsheet.derivations.proved import Proof, ProofStatus
@@ -229,9 +230,7 @@ def test_a_claim_that_has_no_value_of_these_data_is_told(tmp_path: Path) -> None
         "class Parts(Method):\n    x = measured('m', 'first')\n    y = measured('m', 'second')\n"
         "    s = let(x + y, 'sum')\n    claim((x**2 - y**2) / (x - y), s, 'quotient')\n"
     )
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    method_folder(tmp_path, code, '[measurements]\nfile = "m.csv"\n')
     for second, told in (("2.0", "(2), quotient, has no value for these data in row 2"), ("2.5", "")):
         (tmp_path / "m.csv").write_text(f"test,x [m],y [m]\n1,1.0,3.0\n2,2.0,{second}\n", encoding="utf-8")
         study = Study(tmp_path)
@@ -250,10 +249,8 @@ def test_a_whole_number_is_drawn_as_one(tmp_path: Path) -> None:
         "    claim(cos(pi * n), 1, 'half turns')\n    claim((m - 1) * (m - 2), 0, 'one or two')\n"
         "    claim(m, 1, 'one')\n"
     )
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = 'title = "T"\nworkbook = "workbook.py"\n[parameters]\nn = "4"\nm = "1"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    found = {proof.equation.title: proof.status for proof in Study(tmp_path).proved.proofs}
+    study = Study(method_folder(tmp_path, code, 'n = "4"\nm = "1"\n'))
+    found = {proof.equation.title: proof.status for proof in study.proved.proofs}
     assert {said: found[said] for said in ("whole turns", "half turns", "one or two", "one")} == {
         "whole turns": ProofStatus.UNDECIDED,
         "half turns": ProofStatus.REFUTED,

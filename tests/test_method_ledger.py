@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from sympy import Rational, Sum, Symbol
+from test_method import folder as method_folder
 
 from loopsheet import (
     Method,
@@ -300,17 +301,14 @@ def test_what_may_be_zero_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_a_word_keeps_its_data_within_its_ends_in_any_unit(
     unit: str, y: str, low: str, code: int, tmp_path: Path
 ) -> None:
-    code_ = (
+    method = (
         "from loopsheet import Method, given, let\nfrom loopsheet.derivations.equation import Ledger\n"
         "from loopsheet.derivations.vocabulary import Quantity, Vocabulary\n\n"
         f"W = Vocabulary(Quantity('y', 'a datum', '{unit}', 'y%s'{low}))\n\n\n"
         "class Own(Method, ledger=Ledger((), vocabulary=W)):\n    'Own.'\n\n    y = given(W['y'])\n"
         "    z = let(2 * y, 'twice')\n"
     )
-    (tmp_path / "workbook.py").write_text(code_, encoding="utf-8")
-    toml = f'workbook = "workbook.py"\n[parameters]\ny = "{y}"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert main(["show", "z", str(tmp_path)]) == code
+    assert main(["show", "z", str(method_folder(tmp_path, method, f'y = "{y}"\n'))]) == code
 
 
 def test_the_ends_that_a_word_has_hold_of_the_data(

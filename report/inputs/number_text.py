@@ -171,12 +171,16 @@ def read_value(
         findings.add(error.code, at, name=declared.name, **fields)
         return None
     if unit is not None and not declared.bounds.allow(printed.value):
-        allowed = f"{declared.bounds.said(declared.unit)} ({declared.meaning})"
-        beyond = declared.beyond if printed.value <= 0 else ""
-        said = {"name": declared.name, "text": text, "allowed": allowed, "beyond": beyond}
-        findings.add("LS406", at, **said, unit=unit.text)
+        words = what_is_allowed(declared, printed.value)
+        findings.add("LS406", at, name=declared.name, text=text, unit=unit.text, **words)
         return None
     return printed
+
+
+def what_is_allowed(declared: Declared, value: Fraction | float) -> dict[str, str]:
+    """What is told of a value in SI that no input may have: what it may have, and how to let others in."""
+    beyond = declared.beyond if value <= 0 else ""
+    return {"allowed": f"{declared.bounds.said(declared.unit)} ({declared.meaning})", "beyond": beyond}
 
 
 def read_unit_of(

@@ -29,7 +29,7 @@ from ..quantity import Printed
 from .expected import row_of
 from .folders import output
 from .keys import ANY, TABLES
-from .number_text import read_unit_of
+from .number_text import read_unit_of, what_is_allowed
 from .parameters import wrong_type
 from .spelling import same
 
@@ -310,14 +310,11 @@ class _Reader:
 
     def allows(self, labels: Iterable[Index]) -> None:
         """Find values that the quantity cannot have."""
-        allowed = f"{self.of.bounds.said(self.of.unit)} ({self.of.meaning})"
         for label in labels:
             value, name = self.value(label), address(self.of.name, () if label == self.index else label)
             if not self.of.bounds.allow(value):
-                words = {"text": repr(value), "unit": coherent(parse_unit(self.of.unit)), "allowed": allowed}
-                self.findings.add(
-                    "LS406", self.at, name=name, **words, beyond=self.of.beyond if value <= 0 else ""
-                )
+                words = {"text": repr(value), "unit": coherent(parse_unit(self.of.unit))}
+                self.findings.add("LS406", self.at, name=name, **words, **what_is_allowed(self.of, value))
 
     def tells(self, labels: Sequence[Index]) -> None:
         """Find numbers of which nobody knows what their uncertainty comes from."""

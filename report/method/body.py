@@ -456,12 +456,12 @@ class MethodBody(dict[str, Any]):
             bounds = replace(bounds, low=max(bounds.low or 0.0, 0.0))
         if said.quantity:
             bounds = let_in(said.quantity, bounds)
-        own = name, said.unit, said.asked or said.meaning, bounds
+        own = name, said.unit, said.asked or said.meaning, bounds, said.beyond
         rows = self.axis if said.of is None else said.of
         if rows not in self.row_axes:
             raise SheetError(f"{name}: {none_of(rows, 'rows')}", name)
-        measured = Measured(*own, said.beyond, table=rows.name)
-        self.inputs.append(measured if said.is_measured else Parameter(*own, said.default, said.beyond))
+        measured = Measured(*own, table=rows.name)
+        self.inputs.append(measured if said.is_measured else Parameter(*own, said.default))
         self.examples |= {name: said.example} if said.example else {}
         self.constants += [name] * said.is_constant
         positive = said.column["positive"] or bool(size.zero and bounds.low is not None and bounds.low > 0)

@@ -21,7 +21,7 @@ from ..workbook import Measured, Parameter, RowTable, Workbook, tables_of
 from .body import MethodBody
 from .errors import CURRENT, WatchedBody
 
-FEW = 4.0
+_FEW = 4.0
 """Where nothing else is said of it, a whole number is drawn from a half to twice as many."""
 
 
@@ -37,7 +37,7 @@ def _drawn(column: Column, bounds: Bounds, is_sure: bool) -> Quantity:
     known = (low, high) if is_sure else (None, None)
     if low is None or high is None:
         end = next((each for each in (low, high) if each is not None), 0.0)
-        far = max(abs(end), FEW if bounds.integer else 1.0) * (1 if high is None else -1)
+        far = max(abs(end), _FEW if bounds.integer else 1.0) * (1 if high is None else -1)
         low, high = sorted((end + far / 2, end + 2 * far))
     own = column.name, column.meaning, column.unit, column.latex or spelt(column.name), (low, high)
     return Quantity(*own, bool(column.positive), "", *known, whole=bounds.integer)
