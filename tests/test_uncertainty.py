@@ -20,8 +20,9 @@ from loopsheet.report.engines.numpy import evaluate
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.study import Study
-from loopsheet.report.uncertainty import propagation, second_order
+from loopsheet.report.uncertainty import large, propagation, second_order
 from loopsheet.report.uncertainty.coverage import assigned, coverage, effective
+from loopsheet.report.uncertainty.large import Contributions
 from loopsheet.report.uncertainty.propagation import Spread
 
 PAPER = Path(__file__).parent.parent / "data" / "soft_steel"
@@ -108,13 +109,70 @@ def test_without_the_zeros_it_is_the_same(tmp_path: Path, monkeypatch: pytest.Mo
     beside = {name: (whole.variances(name), whole.influence([], [name]).rows) for name in columns}
     monkeypatch.setattr(propagation, "AT_ONCE", 1)
     kinds = {name: {type(own) for _, own in whole._blocks(name)} for name in columns}
-    assert kinds["x_m1"] == kinds["alpha"] != kinds["alpha_mean"] == {np.ndarray}
+    assert kinds["x_m1"] == kinds["alpha"] == kinds["alpha_mean"] == {Contributions}
+    lost = large.LEFT**-1 * 2.0**-51  # where terms of a variance cancel
+    for name, (variances, _) in beside.items():
+        assert whole.variances(name) == pytest.approx(variances, rel=lost, nan_ok=True)
+    monkeypatch.setattr(Contributions, "filled", 0)
     for name, (variances, rows) in beside.items():
         assert whole.variances(name) == pytest.approx(variances, rel=1e-13, nan_ok=True)
         few = whole.influence([], [name]).rows
         assert few.keys() == rows.keys()
         for cell, moved in few.items():
             assert dict(moved) == pytest.approx(dict(rows[cell]), rel=1e-13)
+
+
+ABOUT_MEANS = """
+from loopsheet import Method, let, mean, measured
+
+class Densities(Method):
+    "Densities about their mean."
+    m = measured("g", "mass")
+    V = measured("mL", "volume")
+    rho = let(m / V, "density")
+    rho_mean = let(mean(rho), "their mean")
+    V_mean = let(mean(V), "mean volume")
+    deviation = let(rho - rho_mean, "deviation")
+    share = let(V / V_mean, "share")
+    both = let(deviation * share, "both")
+    again = let(deviation + rho_mean - rho, "nothing")
+    relative = let(rho / rho_mean, "relative density")
+"""
+OF_MANY = """
+workbook = "workbook.py"
+[measurements]
+file = "measurements.csv"
+[uncertainty]
+m = "u = 2 mg"
+V = "u = 0.3 %"
+[uncertainty.correlation]
+"m, V" = "0.4"
+[uncertainty.shared.balance]
+of = "m"
+stated = "u = 1 % of reading"
+"""
+
+
+def test_about_their_means_many_rows_have_what_few_have(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A balance that reads too high moves no relative density; also where only what is left is looked at."""
+    (tmp_path / "workbook.py").write_text(ABOUT_MEANS, encoding="utf-8")
+    (tmp_path / "report.toml").write_text(OF_MANY, encoding="utf-8")
+    rows = "1,20,10\n2,31,15\n3,12.5,7\n4,18,9.1\n"
+    (tmp_path / "measurements.csv").write_text(f"reading,m [g],V [mL]\n{rows}", encoding="utf-8")
+    report = Study(tmp_path).computed
+    monkeypatch.setattr(second_order, "LARGEST", 1)  # else all is of one block
+    spread = Spread(report.inputs, report.values)
+    columns = [column.name for column in report.sheet.columns]
+    few = {name: spread.variances(name) for name in columns}
+    assert few["again"][0] == pytest.approx(0)
+    monkeypatch.setattr(propagation, "AT_ONCE", 1)
+    monkeypatch.setattr(Contributions, "filled", 2)
+    for left in (0.0, large.LEFT, 1.0):  # of what cancels; at last all is found from all errors
+        monkeypatch.setattr(large, "LEFT", left)
+        for name in columns:
+            assert spread.variances(name) == pytest.approx(few[name], rel=1e-12, nan_ok=True, abs=1e-40)
 
 
 # --- against whole sheets ---------------------------------------------------------------------------------

@@ -83,7 +83,8 @@ def _drawn(table: Measurements, number: int) -> list[int]:
         f"{name} {' '.join(each.text if each else '' for each in column)}"
         for name, column in table.measured.items()
     )
-    lots = [hashlib.sha256(f"{test}\n{digits}".encode()).digest() for test in table.tests]
+    seed = hashlib.sha256(digits.encode()).hexdigest()
+    lots = [hashlib.sha256(f"{test}\n{seed}".encode()).digest() for test in table.tests]
     return sorted(sorted(range(len(lots)), key=lots.__getitem__)[:number])
 
 

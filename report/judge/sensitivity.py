@@ -23,7 +23,7 @@ from .chain import Chain, Numbered, SparseRows
 Array = NDArray[np.float64]
 
 AT_ONCE = 1 << 22
-"""Entries."""
+"""So many derivatives are held at the same time."""
 CANCELLED = 2.0**-42
 """Of the terms of a sum: what is left of them where they cancel may be rounding."""
 

@@ -23,7 +23,7 @@ from ..engines.numpy import Program
 from ..inputs.inputs import Inputs
 from ..inputs.limits import Limits
 from ..judge.chain import Chain, SheetDerivatives
-from ..judge.sensitivity import NumericSweep
+from ..judge.sensitivity import AT_ONCE, NumericSweep
 from ..result.uncertain import (
     COUNT,
     UNLOOKED,
@@ -40,6 +40,7 @@ from ..sheet import Column, CountedAxis, Given, PairAxis, RepeatAxis
 from ..workbook import Curve, SquareSum, Workbook
 from .conformity import conformity, past
 from .coverage import assigned, coverage, of_sum, with_correlated
+from .large import Contributions, largest
 from .misfit import least_squares_of_errors
 from .monte_carlo import SOME, by_draws, sample
 from .second_order import COUNTS, SecondOrder, beside, root_of
@@ -49,8 +50,6 @@ Array = NDArray[np.float64]
 
 LARGEST = 300_000
 """Cells; beyond, nothing is told of what rests on generated rows: the way to each would have to be held."""
-AT_ONCE = 1 << 22
-"""So many derivatives are held at the same time."""
 MOST_BUDGETS = 20
 """Budgets of a report."""
 MOST_CELLS = 300
@@ -181,21 +180,30 @@ class Spread:
     def _blocks(self, name: str) -> Iterator[tuple[list[tuple[str, int]], Any]]:
         """All cells of a column with their :meth:`contributions`, as many at once as memory holds.
 
-        Of a column that memory does not hold at once all cells come without their zeros, as a sparse array,
-        unless they rest on what is taken over all rows: these have none.
+        Of a column that memory does not hold at once all cells come together: without their zeros, as a
+        sparse array, or, where these are too few, as
+        :class:`~loopsheet.report.uncertainty.large.Contributions`.
         """
         chain, rows = self._along.chain, len(self.values.status[name])
-        pattern = chain.patterns[name]
-        if self.second or rows * chain.number <= AT_ONCE or (pattern.by >= chain.number).any():
+        if self.second or not self.sources or rows * chain.number <= AT_ONCE:
             yield from ((cells, self.contributions(cells)) for cells in self._some(name))
             return
         from scipy.sparse import csr_array
 
-        entries = self._along.entries[pattern.entries]
-        derivatives = csr_array((entries, (pattern.rows, pattern.by)), (rows, chain.number))
-        of = np.repeat(np.arange(len(self.sources)), np.diff(self._first, append=self._by.size))
-        weights = csr_array((self._u, (self._by, of)), (chain.number, len(self.sources)))
-        yield [(name, row) for row in range(rows)], derivatives @ weights
+        pattern, number = chain.patterns[name], chain.number
+        entries, of = self._along.entries[pattern.entries], pattern.by >= number
+        slopes, by_scalars = (
+            csr_array((entries[own], (pattern.rows[own], pattern.by[own] - behind)), (rows, width))
+            for own, behind, width in ((~of, 0, number), (of, number, len(chain.scalars)))
+        )
+        sources = np.repeat(np.arange(len(self.sources)), np.diff(self._first, append=self._by.size))
+        weights = csr_array((self._u, (self._by, sources)), (number, len(self.sources)))
+        with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
+            found = Contributions(slopes, by_scalars, self._along.whole, weights)
+            yield (
+                [(name, row) for row in range(rows)],
+                found.sparse() if found.filled <= AT_ONCE else found,
+            )
 
     def _some(self, name: str) -> Iterator[list[tuple[str, int]]]:
         """All cells of a column, as many at once as memory holds."""
@@ -221,7 +229,10 @@ class Spread:
     def _variance(self, found: Any) -> Array:
         """Of first order."""
         with np.errstate(all="ignore"):
-            variance: Array = np.sum(found * with_correlated(found, self._pairs), axis=1)
+            if isinstance(found, Contributions):
+                variance = found.variances(self._pairs)
+            else:
+                variance = np.sum(found * with_correlated(found, self._pairs), axis=1)
         return np.maximum(variance, 0.0)
 
     def _orders(self, cells: Sequence[tuple[str, int]], own: Any) -> tuple[Array, Array]:
@@ -233,9 +244,10 @@ class Spread:
         first, second = self._variance(own), self._more(cells, own)
         computed = [not isinstance(self.values.sheet[name].rule, Given) for name, _ in cells]
         values = np.array([self.values.value[name][row] for name, row in cells])
-        largest = _largest(own != 0, self._shares)
-        largest = np.where(largest > 0, largest, self._shares.max())  # of second order alone: of any
-        noise = ROUNDED * np.minimum(1.0, ROUNDINGS * largest)
+        many = isinstance(own, Contributions)
+        share = own.largest(self._shares) if many else largest(own != 0, self._shares)
+        share = np.where(share > 0, share, self._shares.max())  # of second order alone: of any
+        noise = ROUNDED * np.minimum(1.0, ROUNDINGS * share)
         with np.errstate(all="ignore"):
             least = np.maximum(np.abs(noise * np.where(computed, values, 0.0)), self._creeping(cells))
             little = first + np.nan_to_num(second) <= np.square(least)
@@ -284,14 +296,11 @@ class Spread:
         _, dof = of_sum(self.sources, own, self._pairs, math.sqrt(first))
         shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
         factor, because = coverage(shape, law, dof, level)
-        order = [
-            int(n)
-            for n in np.argsort(-np.abs(shares), kind="stable")
-            if abs(own[n]) > NOTHING * np.abs(own).max()
-        ]
+        order = np.argsort(-np.abs(shares), kind="stable")
+        order = order[np.abs(own[order]) > NOTHING * np.abs(own).max()].tolist()
         told = tuple(self._contribution(n, float(own[n]), float(shares[n])) for n in order)
         known = set(order)
-        idle = tuple(self._contribution(n, 0.0, 0.0) for n in range(len(self.sources)) if n not in known)
+        idle = tuple(self._contribution(n, 0.0, 0.0) for n in self._leading_to(name, row) if n not in known)
         pairs, tied = (
             {
                 (self.sources[a].name, self.sources[b].name): r
@@ -305,6 +314,15 @@ class Spread:
         return Budget(
             self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
         )
+
+    def _leading_to(self, name: str, row: int) -> list[int]:
+        """The sources from which a way leads to a cell, whatever they do to it now; by a scalar, from all."""
+        by, number = self._along.chain.cells([(name, row)]).by, len(self.sources)
+        if (by >= self._along.chain.number).any() or not number:
+            return list(range(number))
+        reached = np.zeros(self._along.chain.number, dtype=bool)
+        reached[by] = True
+        return np.flatnonzero(np.logical_or.reduceat(reached[self._by], self._first)).tolist()
 
     def freedom(self, name: str, row: int) -> float:
         """The effective degrees of freedom of a cell, before they are truncated."""
@@ -423,6 +441,8 @@ class Spread:
         for name in columns:
             more: dict[str, Sequence[tuple[int, float]]] = {}
             for some, own in self._blocks(name):
+                if isinstance(own, Contributions):  # far more than are passed on
+                    break
                 at, bent, doubted = self._addressed(some, own)
                 more |= {cell: _moved(own, n) for cell, n in at.items()}
                 second, doubts = second | bent, doubts | doubted
@@ -527,13 +547,6 @@ def _known(values: Values) -> set[str]:
         for column in sheet.columns
         if generated.isdisjoint(each.name for each in (column, *sheet.ancestors(column)))
     }
-
-
-def _largest(where: Any, sizes: Array) -> Array:
-    """The largest size where a mask (rows, sizes), dense or sparse, is true in a row; else 0."""
-    if isinstance(where, np.ndarray):
-        return np.asarray(np.max(np.where(where, sizes, 0.0), axis=1))
-    return np.asarray(where.multiply(sizes).max(axis=1).toarray()).ravel()
 
 
 def _moved(own: Any, n: int) -> Sequence[tuple[int, float]]:
