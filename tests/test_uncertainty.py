@@ -17,6 +17,7 @@ from small_report import end_gauge
 
 from loopsheet.report.distribution import Shape
 from loopsheet.report.engines.numpy import evaluate
+from loopsheet.report.judge import chain
 from loopsheet.report.result.result import Report
 from loopsheet.report.result.uncertain import ErrorSource
 from loopsheet.report.study import Study
@@ -123,7 +124,7 @@ def test_without_the_zeros_it_is_the_same(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 ABOUT_MEANS = """
-from loopsheet import Method, let, mean, measured
+from loopsheet import Method, groups, let, mean, measured
 
 class Densities(Method):
     "Densities about their mean."
@@ -137,6 +138,11 @@ class Densities(Method):
     both = let(deviation * share, "both")
     again = let(deviation + rho_mean - rho, "nothing")
     relative = let(rho / rho_mean, "relative density")
+    lot = groups("lot")
+    of_lot = let(mean(rho, of=lot), "mean of a lot")
+    off = let(rho - of_lot, "from the mean of its lot")
+    between = let(of_lot - mean(of_lot), "between lots")
+    scatter = let(sum(off**2), "scatter in lots")
 """
 OF_MANY = """
 workbook = "workbook.py"
@@ -159,14 +165,20 @@ def test_about_their_means_many_rows_have_what_few_have(
     """A balance that reads too high moves no relative density; also where only what is left is looked at."""
     (tmp_path / "workbook.py").write_text(ABOUT_MEANS, encoding="utf-8")
     (tmp_path / "report.toml").write_text(OF_MANY, encoding="utf-8")
-    rows = "1,20,10\n2,31,15\n3,12.5,7\n4,18,9.1\n"
-    (tmp_path / "measurements.csv").write_text(f"reading,m [g],V [mL]\n{rows}", encoding="utf-8")
+    rows = "1,A,20,10\n2,B,31,15\n3,A,12.5,7\n4,B,18,9.1\n5,A,14,7.2\n"
+    (tmp_path / "measurements.csv").write_text(f"reading,lot,m [g],V [mL]\n{rows}", encoding="utf-8")
     report = Study(tmp_path).computed
     monkeypatch.setattr(second_order, "LARGEST", 1)  # else all is of one block
     spread = Spread(report.inputs, report.values)
     columns = [column.name for column in report.sheet.columns]
     few = {name: spread.variances(name) for name in columns}
     assert few["again"][0] == pytest.approx(0)
+    monkeypatch.setattr(chain, "MOST", 0)
+    spread = Spread(report.inputs, report.values)
+    scalars = {column.name for column in report.sheet.columns if column.axis is None}
+    assert any(name not in scalars for name in spread._along.chain.hubs)
+    for name in columns:
+        assert spread.variances(name) == pytest.approx(few[name], rel=1e-12, nan_ok=True, abs=1e-40)
     monkeypatch.setattr(propagation, "AT_ONCE", 1)
     monkeypatch.setattr(Contributions, "filled", 2)
     for left in (0.0, large.LEFT, 1.0):  # of what cancels; at last all is found from all errors

@@ -115,7 +115,7 @@ class RoundingBounds(Mapping[str, Array]):
 
 
 EXPANDED = 1 << 24
-"""Up to so many numbers, what scalars do to a column's rows is added up source by source; beyond, their
+"""Up to so many numbers, what hubs do to a column's rows is added up source by source; beyond, their
 bounds are added, which is never less."""
 
 
@@ -175,44 +175,44 @@ class _Spread(NumericSweep):
         found = {}
         with np.errstate(all="ignore"):  # a derivative beyond all doubles leaves nothing known of the cell
             self.go()
-            of_scalars = self.weighed(self.whole)
+            of_hubs = self.weighed(self.whole)
             for name in self.values.sheet.by_name:
-                own, total = np.abs(self.values.value[name]), self.total(name, of_scalars)
+                own, total = np.abs(self.values.value[name]), self.total(name, of_hubs)
                 found[name] = np.where(np.isnan(own), np.nan, np.maximum(total, own))
         return found
 
-    def total(self, name: str, of_scalars: Array) -> Array:
+    def total(self, name: str, of_hubs: Array) -> Array:
         """All roundings times what they do to each row of a column."""
-        direct, scalars = self.matrices(name)
-        if scalars.counts.max(initial=0) == 1:
-            return self.beside_one(direct, scalars, of_scalars)
-        if scalars.rows.size and direct.size * self.chain.number <= EXPANDED:
-            return self.weighed(direct.dense(self.chain.number) + scalars.times(self.whole))
-        return self.weighed(direct) + _weighed(scalars, of_scalars)
+        direct, hubs = self.matrices(name)
+        if hubs.counts.max(initial=0) == 1:
+            return self.beside_one(direct, hubs, of_hubs)
+        if hubs.rows.size and direct.size * self.chain.number <= EXPANDED:
+            return self.weighed(direct.dense(self.chain.number) + hubs.times(self.whole))
+        return self.weighed(direct) + _weighed(hubs, of_hubs)
 
-    def beside_one(self, direct: _Entries, scalars: _Entries, of_scalars: Array) -> Array:
-        """The same where no row rests on two scalars: what one does to a row, and what is other beside it."""
+    def beside_one(self, direct: _Entries, hubs: _Entries, of_hubs: Array) -> Array:
+        """The same where no row rests on two hubs: what one does to a row, and what is other beside it."""
         size, rows, by = direct.size, direct.rows, direct.columns
         times, which = np.zeros(size), np.zeros(size, dtype=np.intp)
-        times[scalars.rows], which[scalars.rows] = scalars.values, scalars.columns
+        times[hubs.rows], which[hubs.rows] = hubs.values, hubs.columns
         theirs, errors = times[rows] * self.whole[which[rows], by], self.rounding[by]
         both = direct.values + theirs
         more = np.where(np.isinf(errors) & (both != 0), np.inf, (np.abs(both) - np.abs(theirs)) * errors)
-        found = np.where(times == 0, 0.0, np.abs(times) * of_scalars[which])
+        found = np.where(times == 0, 0.0, np.abs(times) * of_hubs[which])
         total: Array = found + np.bincount(rows, np.where(both == theirs, 0.0, more), size)
         return np.where(np.isfinite(total), total, np.inf)
 
     def matrices(self, name: str) -> tuple[_Entries, _Entries]:
-        """The derivatives of a column by ways that pass no scalar, and those by scalars."""
+        """The derivatives of a column by ways that pass no hub, and those by hubs."""
         chain, cells = self.chain, self.chain.patterns[name]
         order = np.lexsort((cells.by, cells.rows))
         rows, by, entries = cells.rows[order], cells.by[order], self.entries[cells.entries[order]]
         direct, size = by < chain.number, chain.sources[name].size
-        own, scalars = (
+        own, hubs = (
             _Entries(entries[which], rows[which], by[which] - first, size)
             for which, first in ((direct, 0), (~direct, chain.number))
         )
-        return own, scalars
+        return own, hubs
 
     def weighed(self, derivatives: Any) -> Array:
         """The sizes of derivatives times all roundings."""

@@ -3,9 +3,9 @@
 That is the same whatever the values, and is found once. Along it go numbers, whole batches of them, or
 intervals (:mod:`~loopsheet.report.judge.sensitivity`).
 
-A row rests on few cells, but by way of a scalar, a mean say, on almost all. So a derivative is kept in two
-parts: the entries of a row by ways that pass no computed scalar, and its entries by these; what scalars rest
-on is kept once.
+A row rests on few cells, but by way of a scalar, a mean say, on almost all: a hub, as the total of a large
+group of rows is one to these. So a derivative is kept in two parts: the entries of a row by ways that pass no
+hub, and its entries by hubs; what these rest on is kept once.
 """
 
 from __future__ import annotations
@@ -27,6 +27,9 @@ from ..sheet import Sheet
 
 Numbered = NDArray[np.intp]
 _NONE = np.zeros(0, dtype=np.intp)
+
+MOST = 1 << 18
+"""So many entries of rows by one another are kept, without a hub."""
 
 
 @dataclass(frozen=True)
@@ -70,27 +73,27 @@ class SparseRows:
     by: Numbered
     entries: Numbered
     """`rows`, `by` and `entries`: of shape (entries,); the row of each, the number of what it is a derivative
-    by (behind all sources, of a scalar), and its place among the entries of all nodes."""
+    by (behind all sources, of a hub), and its place among the entries of all nodes."""
 
-    def by_scalars(self, sources: int) -> tuple[Numbered, Numbered, Numbered, Numbered]:
-        """What comes by way of scalars: their numbers behind the sources, and the places of the entries.
+    def by_hubs(self, sources: int) -> tuple[Numbered, Numbered, Numbered, Numbered]:
+        """What comes by way of hubs: their numbers behind the sources, and the places of the entries.
 
         Those of a row are beside one another; the first of each row, and which row that is, follow.
         """
-        if sources not in self._by_scalars:
+        if sources not in self._by_hubs:
             own = np.flatnonzero(self.by >= sources)
             own = own[np.lexsort((self.by[own], self.rows[own]))]
             first = np.flatnonzero(np.diff(self.rows[own], prepend=-1))
-            self._by_scalars[sources] = (
+            self._by_hubs[sources] = (
                 self.by[own] - sources,
                 self.entries[own],
                 first,
                 self.rows[own[first]],
             )
-        return self._by_scalars[sources]
+        return self._by_hubs[sources]
 
     @cached_property
-    def _by_scalars(self) -> dict[int, tuple[Numbered, Numbered, Numbered, Numbered]]:
+    def _by_hubs(self) -> dict[int, tuple[Numbered, Numbered, Numbered, Numbered]]:
         return {}
 
     def only(self, rows: Numbered) -> SparseRows:
@@ -143,7 +146,9 @@ class Chain:
         nodes = made.nodes
         self.sizes = {node.name: self.size(node) for node in nodes}
         computed = [node.name for node in nodes if node.axis is None and node.slopes]
-        self.scalars = {name: self.number + n for n, name in enumerate(computed)}
+        self.hubs = {name: self.number + n for n, name in enumerate(computed)}
+        """The number of the first row of each, behind all sources."""
+        self.hubs_number = len(computed)
         self.length = 1
         """How many entries there are. The first is 1."""
         self.patterns: dict[str, SparseRows] = {}
@@ -220,6 +225,9 @@ class Chain:
                 along.append(others[order])
                 terms += order.size
                 self._add(node.name, rows[begins], by[begins])
+                if node.name not in self.hubs and self._is_hub(node.name):
+                    self.hubs[node.name] = self.number + self.hubs_number
+                    self.hubs_number += self.sizes[node.name]
         terms_of, theirs_at, begin = (np.concatenate(each) for each in (of, along, starts))
         return Level(nodes, tuple(slopes), terms_of, theirs_at, begin, slice(first, self.length))
 
@@ -235,7 +243,12 @@ class Chain:
 
     def _theirs(self, node: NodeDerivatives, slope: Slope) -> SparseRows:
         """The entries of what a slope is by, for each row of the slope."""
-        if slope.by not in self.scalars:
+        if slope.by not in self.hubs:
             return self.patterns[slope.by].only(self.named(node, slope))
         rows = np.arange(self.terms(node))
-        return SparseRows(rows, np.full_like(rows, self.scalars[slope.by]), np.zeros_like(rows))
+        return SparseRows(rows, self.hubs[slope.by] + self.named(node, slope), np.zeros_like(rows))
+
+    def _is_hub(self, name: str) -> bool:
+        """Whether few rows of a node rest on so many that as many rows resting on it had too many entries."""
+        own, rows = self.patterns[name].rows.size, self.sizes[name]
+        return rows * rows <= own and own * own > rows * MOST

@@ -47,8 +47,8 @@ class ForwardSweep:
     Attributes
     ----------
     entries : array (..., entries)
-    whole : array (..., scalars, sources)
-        The derivatives of computed scalars by all sources.
+    whole : array (..., hubs, sources)
+        The derivatives of hubs by all sources.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class ForwardSweep:
         self.chain, self.nothing, self.batch = chain, nothing, batch
         self.entries = nothing((*batch, chain.length))
         self.entries[..., : chain.ones] = 1.0
-        self.whole = nothing((*batch, len(chain.scalars), chain.number))
+        self.whole = nothing((*batch, chain.hubs_number, chain.number))
 
     def go(self) -> Self:
         """Take all steps."""
@@ -71,9 +71,10 @@ class ForwardSweep:
                     self.entries[..., step.entries] = np.add.reduceat(terms, step.starts, axis=-1)
                 for node in step.nodes:
                     self.ended(node)
-                    if node.name in self.chain.scalars:
-                        own = self.derivatives(self.chain.patterns[node.name], 1)
-                        self.whole[..., self.chain.scalars[node.name] - self.chain.number, :] = own[..., 0, :]
+                    if node.name in self.chain.hubs:
+                        first = self.chain.hubs[node.name] - self.chain.number
+                        rows = slice(first, first + self.chain.sizes[node.name])
+                        self.whole[..., rows, :] = self.of(node.name)
         return self
 
     def groups(self, node: NodeDerivatives) -> list[slice]:
@@ -96,10 +97,10 @@ class ForwardSweep:
         found, sources = self.nothing((*self.batch, number, self.chain.number)), self.chain.number
         direct = cells.by < sources
         found[..., cells.rows[direct], cells.by[direct]] = self.entries[..., cells.entries[direct]]
-        scalars, entries, first, rows = cells.by_scalars(sources)
+        hubs, entries, first, rows = cells.by_hubs(sources)
         if rows.size:
             with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
-                terms = self.entries[..., entries, None] * self.whole[..., scalars, :]
+                terms = self.entries[..., entries, None] * self.whole[..., hubs, :]
                 terms[..., first, :] = found[..., rows, :] + terms[..., first, :]
                 found[..., rows, :] = np.add.reduceat(terms, first, axis=-2)
         return found
@@ -157,10 +158,10 @@ class NumericSweep(ForwardSweep):
         """
         own = self.chain.cells(cells)
         found: Array = self.derivatives(own, len(cells))
-        scalars, entries, first, rows = own.by_scalars(self.chain.number)
+        hubs, entries, first, rows = own.by_hubs(self.chain.number)
         if rows.size:
             with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
-                terms = np.abs(self.entries[..., entries, None] * self.whole[..., scalars, :])
+                terms = np.abs(self.entries[..., entries, None] * self.whole[..., hubs, :])
                 all_terms = np.add.reduceat(terms, first, axis=-2)
             found[..., rows, :] = without_rounding(found[..., rows, :], all_terms)
         for n, odd in self.without_value(cells):

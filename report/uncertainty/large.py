@@ -31,50 +31,50 @@ class Contributions:
     Attributes
     ----------
     slopes : sparse array (cells, numbers)
-        The derivatives by the numbers that were given, along ways that pass no computed scalar.
-    by_scalars : sparse array (cells, scalars)
-        Those by computed scalars.
-    scalars : float array (scalars, numbers)
-        Those of the scalars.
+        The derivatives by the numbers that were given, along ways that pass no hub.
+    by_hubs : sparse array (cells, hubs)
+        Those by hubs.
+    hubs : float array (hubs, numbers)
+        Those of the hubs.
     weights : sparse array (numbers, sources)
         How far a standard uncertainty of each source moves each number.
     """
 
     slopes: Any
-    by_scalars: Any
-    scalars: Array
+    by_hubs: Any
+    hubs: Array
     weights: Any
 
     @cached_property
     def filled(self) -> int:
         """How many derivatives are not 0, at most."""
-        each = np.count_nonzero(self.scalars, axis=1)
-        return int(self.slopes.nnz + each[self.by_scalars.indices].sum())
+        each = np.count_nonzero(self.hubs, axis=1)
+        return int(self.slopes.nnz + each[self.by_hubs.indices].sum())
 
     def sparse(self) -> Any:
         """All contributions (cells, sources), without the zeros."""
         found = self.slopes
-        if self.by_scalars.nnz:
-            scalars = type(found)(self.scalars)
-            found = (found + self.by_scalars @ scalars).tocsr()
-            found = found.multiply(abs(found) > CANCELLED * (abs(self.by_scalars) @ abs(scalars))).tocsr()
+        if self.by_hubs.nnz:
+            hubs = type(found)(self.hubs)
+            found = (found + self.by_hubs @ hubs).tocsr()
+            found = found.multiply(abs(found) > CANCELLED * (abs(self.by_hubs) @ abs(hubs))).tocsr()
         return found @ self.weights
 
     def dense(self, cells: Numbered) -> Array:
         """Those to some cells (some, sources)."""
-        by_scalars = self.by_scalars[cells].toarray()
-        found = self.slopes[cells].toarray() + by_scalars @ self.scalars
-        found = without_rounding(found, np.abs(by_scalars) @ np.abs(self.scalars))
+        by_hubs = self.by_hubs[cells].toarray()
+        found = self.slopes[cells].toarray() + by_hubs @ self.hubs
+        found = without_rounding(found, np.abs(by_hubs) @ np.abs(self.hubs))
         return np.asarray(found @ self.weights)
 
     def variances(self, pairs: Sequence[tuple[int, int, float]]) -> Array:
         """The variance of each cell (cells,); `pairs`: the places of two sources, and their correlation."""
-        own, scalars = self.slopes @ self.weights, self.scalars @ self.weights
-        every = with_correlated(scalars, pairs)
+        own, hubs = self.slopes @ self.weights, self.hubs @ self.weights
+        every = with_correlated(hubs, pairs)
         parts = [
             _sums(own.multiply(with_correlated(own, pairs))),
-            2 * _sums(self.by_scalars.multiply(own @ every.T)),
-            _sums(self.by_scalars.multiply(self.by_scalars @ (scalars @ every.T))),
+            2 * _sums(self.by_hubs.multiply(own @ every.T)),
+            _sums(self.by_hubs.multiply(self.by_hubs @ (hubs @ every.T))),
         ]
         found: Array = np.sum(parts, axis=0)
         cancelled = np.flatnonzero(found <= LEFT * np.sum(np.abs(parts), axis=0))
@@ -87,9 +87,9 @@ class Contributions:
 
     def largest(self, sizes: Array) -> Array:
         """The largest of the sizes (sources,) of what moves each cell (cells,); else 0."""
-        scalars = largest(self.scalars @ self.weights != 0, sizes)
+        hubs = largest(self.hubs @ self.weights != 0, sizes)
         own = largest(self.slopes @ self.weights != 0, sizes)
-        return np.maximum(own, largest(self.by_scalars != 0, scalars))
+        return np.maximum(own, largest(self.by_hubs != 0, hubs))
 
 
 def largest(where: Any, sizes: Array) -> Array:

@@ -192,14 +192,14 @@ class Spread:
 
         pattern, number = chain.patterns[name], chain.number
         entries, of = self._along.entries[pattern.entries], pattern.by >= number
-        slopes, by_scalars = (
+        slopes, by_hubs = (
             csr_array((entries[own], (pattern.rows[own], pattern.by[own] - behind)), (rows, width))
-            for own, behind, width in ((~of, 0, number), (of, number, len(chain.scalars)))
+            for own, behind, width in ((~of, 0, number), (of, number, chain.hubs_number))
         )
         sources = np.repeat(np.arange(len(self.sources)), np.diff(self._first, append=self._by.size))
         weights = csr_array((self._u, (self._by, sources)), (number, len(self.sources)))
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
-            found = Contributions(slopes, by_scalars, self._along.whole, weights)
+            found = Contributions(slopes, by_hubs, self._along.whole, weights)
             yield (
                 [(name, row) for row in range(rows)],
                 found.sparse() if found.filled <= AT_ONCE else found,
@@ -316,7 +316,7 @@ class Spread:
         )
 
     def _leading_to(self, name: str, row: int) -> list[int]:
-        """The sources from which a way leads to a cell, whatever they do to it now; by a scalar, from all."""
+        """The sources from which a way leads to a cell, whatever they do to it now; by a hub, from all."""
         by, number = self._along.chain.cells([(name, row)]).by, len(self.sources)
         if (by >= self._along.chain.number).any() or not number:
             return list(range(number))

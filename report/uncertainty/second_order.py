@@ -108,7 +108,7 @@ class SecondOrder:
         self._along = NumericSweep(chain, near).go()
         with np.errstate(all="ignore"):  # a derivative may be beyond all doubles
             self._through = self._along.whole @ self.weights
-        """The derivatives of computed scalars by the errors (steps, scalars, errors)."""
+        """The derivatives of hubs by the errors (steps, hubs, errors)."""
         self._uses = (self._through != 0).any(axis=0)
         self.torn, self.torn_far = (_resting_on(other_rows(there, values), sheet) for there in (near, far))
         """What rests on sums that run over other rows a step away, and where U reaches: other estimators."""
@@ -252,18 +252,18 @@ class SecondOrder:
         weights = np.zeros((*entries.shape, half))
         entries[rows, place], weights[rows, place] = at, self.weights[by]
         rows, by, at = pattern.rows[~direct], pattern.by[~direct], pattern.entries[~direct]
-        scalars = by - len(self.weights)
+        hubs = by - len(self.weights)
         uses = (weights != 0).any(axis=1)
-        np.logical_or.at(uses, rows, self._uses[scalars])
+        np.logical_or.at(uses, rows, self._uses[hubs])
         used = np.argsort(~uses, axis=1, kind="stable")[:, : uses.sum(axis=1).max(initial=0)]
         weights = np.take_along_axis(weights, used[:, None, :], axis=2)
-        # The rows of a column name the same scalars: all of them at once, along every error.
-        named, which = np.unique(scalars, return_inverse=True)
-        by_scalars = np.zeros((2 * half, len(cells), named.size))
-        by_scalars[:, rows, which] = along.entries[:, at]
-        through, cell = by_scalars @ self._through[:, named], np.arange(len(cells))[:, None, None]
+        # The rows of a column name the same hubs: all of them at once, along every error.
+        named, which = np.unique(hubs, return_inverse=True)
+        by_hubs = np.zeros((2 * half, len(cells), named.size))
+        by_hubs[:, rows, which] = along.entries[:, at]
+        through, cell = by_hubs @ self._through[:, named], np.arange(len(cells))[:, None, None]
         terms = np.zeros_like(through)
-        terms[:, still] = np.abs(by_scalars[:, still]) @ np.abs(self._through[:, named])
+        terms[:, still] = np.abs(by_hubs[:, still]) @ np.abs(self._through[:, named])
 
         def stepped(step: NDArray[np.intp]) -> Array:
             step = step[:, :, None]
