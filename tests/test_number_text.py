@@ -27,7 +27,7 @@ REFUSED = {
     "LS401": [
         "abc", "1_000", "0x10", "1e", "e5", ".", "+", "--1", "1.2.3", "1 000", "１", "٣", "−1", "1/2", "1+1",
         "2.3 mm", "1e5.5", "\x00", "½", "1d5", "0b1", "1j", "True", "__import__('os')", "9**9", "$5", "~5",
-        "5%", "<3",
+        "5%", "<3", "1.0,60", "1,5.70", "12,34.5", "0.234,5", "1.2.3,4",
     ],
     "LS402": ["2,334", "-0,5", "1.002,5", "1,002.5", "1 002,5", ",5", "1,5e3"],
     "LS403": [""],
@@ -51,6 +51,8 @@ def test_anything_else_is_refused_with_its_reason(code: str, text: str) -> None:
         ("\u22120.35", "write the minus sign as an ordinary hyphen"),
         ("<0.05", "what is beyond a limit has no number"),
         ("\u2265 12", "what is beyond a limit has no number"),
+        ("1.0,60", "are these two numbers, each for a column?"),
+        ("12,34.5", "are these two numbers, each for a column?"),
         ("\u2013", "in a table of measurements the cell of what was not measured is empty"),
     ],
 )
@@ -67,6 +69,8 @@ def test_what_is_no_number_is_told_how_to_be_one(text: str, hint: str) -> None:
         ("1.002,5", "1002.5"),
         ("1,002.5", "1002.5"),
         ("1 002,5", "1002.5"),
+        ("1.002.003,5", "1002003.5"),
+        ("1,002,003.5", "1002003.5"),
         ("-0,5", "-0.5"),
         ("\u22120,35", "-0.35"),
     ],

@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE](?P<exponent>[+-]?[0-9]+))?")
 _COMMA = re.compile(
-    r"[+-]?[0-9. '\u00a0\u202f]*,[0-9]+(?:[eE][+-]?[0-9]+)?|[+-]?[0-9]+(?:,[0-9]{3})+\.[0-9]*"
+    r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?"
+    r"|[+-]?[1-9][0-9]{0,2}(?:([. '\u00a0\u202f])[0-9]{3})(?:\1[0-9]{3})*,[0-9]+"
+    r"|[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+\.[0-9]*"
 )
+_TWO_NUMBERS = re.compile(r"[+-]?[0-9]+\.[0-9]+,[+-]?[0-9]+(?:\.[0-9]+)?|[+-]?[0-9]+,[0-9]+\.[0-9]+")
 _EITHER = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NOT_FINITE = frozenset(
     {"nan", "inf", "infinity", "∞", "#n/a", "#div/0!", "#value!", "#num!", "#ref!", "n/a"}
@@ -90,6 +93,8 @@ def _why_not(text: str) -> NumberError:
     suggestion = ""
     if behind := _POWER_BEHIND.fullmatch(text):
         suggestion = f"the power of ten stands before its uncertainty: {behind[1]}{behind[3]}{behind[2]}"
+    elif _TWO_NUMBERS.fullmatch(usual):
+        suggestion = "are these two numbers, each for a column? Marks between thousands stand by three"
     elif with_uncertainty(text):
         suggestion = "its uncertainty stands in parentheses behind all digits, 41.6(2), or in [uncertainty]"
     elif _NUMBER.fullmatch(usual):

@@ -80,7 +80,7 @@ function commit() {
 // Its own unit may stand behind a number.
 function withoutUnit(text = "", name) {
   const { unit } = LIVE.columns[name], all = text.trim(), bare = all.slice(0, -unit.length).trim(), plain = (one) => one.replace(/[µμ]/, "u");
-  return unit !== "1" && plain(all).endsWith(plain(unit)) && /[0-9.)]$/.test(bare) ? bare : text;
+  return unit !== "1" && plain(all).endsWith(plain(unit)) && /[\d.)]$/.test(bare) ? bare : text;
 }
 
 function cancel() {
@@ -206,11 +206,11 @@ function onFocus(event) {
 // --- the clipboard ---------------------------------------------------------------------------------------
 
 function onPaste(event) {
-  const element = event.target, text = event.clipboardData?.getData("text/plain") ?? "";
-  if (!isText(element) || !/[\t\n\r]/.test(text.trim())) return;
+  const element = event.target, text = (event.clipboardData?.getData("text") ?? "").replace(/[\r\n]+$/, "");
+  if (!isText(element) || !/[\t\n\r]/.test(text)) return;
   handled(event);
   if (editing) cancel();
-  const block = text.replace(/[\r\n]+$/, "").split(/\r\n|\r|\n/).map((line) => line.split("\t"));
+  const block = text.split(/\r\n|\r|\n/).map((line) => line.split("\t"));
   const commas = block.flat().some((one) => !one.includes(".") && one.includes(",") && NUMBER.test(normalised(one)));
   const read = (one = "") => normalised(one, commas), head = block.length > 1 && isHead(block[0]) && block.shift();
   const table = tableOf(element), said = (table ? pasteRows : pasteScalars)(element, block, read, head, table);

@@ -3,9 +3,10 @@
 
 // What people write for a number, in our notation: a decimal comma becomes a point, a real minus a hyphen.
 // Nobody knows whether 1,234 is a little more than one or a thousand, unless the other numbers of a block tell.
-const EITHER = /^[+-]?[1-9][0-9]{0,2},[0-9]{3}$/;
+const EITHER = /^[+-]?[1-9]\d{0,2},\d{3}$/;
+const GROUPED = /^[+-]?[1-9]\d{0,2}(([.,])\d{3})(\2\d{3})*$/;
 // In parentheses behind a number stands its standard uncertainty, in units of its last digit.
-const CONCISE = /^([^()]*)\(([0-9]+)\)$/;
+const CONCISE = /^([^()]*)\((\d+)\)$/;
 
 // What is no number even so stays as it was typed: without its comma “200.0, exact” would be a number but for a word.
 function normalised(text, commas) {
@@ -15,11 +16,12 @@ function normalised(text, commas) {
 
 function inOurNotation(text, commas = false) {
   // A blank or a mark groups digits by three, or it is no part of a number.
-  const plain = text.trim().replace(/([0-9])[\s\u00a0\u2007\u202f'_](?=[0-9]{3}(?![0-9]))/g, "$1").replace(/[\u2212\u2013]/g, "-");
+  const plain = text.trim().replace(/(\d)[\s\u00a0\u2007\u202f'_](?=\d{3}(?!\d))/g, "$1").replace(/[\u2212\u2013]/g, "-");
   const comma = plain.lastIndexOf(","), point = plain.lastIndexOf(".");
   if (comma < 0 || plain.indexOf(",") !== comma && point < 0 || !commas && EITHER.test(plain)) return plain;
-  // Of comma and point together, the last is the decimal sign and the others group digits.
-  return comma > point ? plain.replace(/\./g, "").replace(",", ".") : plain.replace(/,/g, "");
+  // Of comma and point together, the last is the decimal sign and the others group digits, by three.
+  const at = Math.max(comma, point), whole = plain.slice(0, at);
+  return point < 0 || GROUPED.test(whole) ? `${whole.replace(/[.,]/g, "")}.${plain.slice(at + 1)}` : plain;
 }
 
 const LARGEST = tenTo(300);
@@ -37,7 +39,7 @@ function readInput({ given, errors, unit }, index, text) {
   if (text === "") return refused("the datum is missing", "");
   const found = NUMBER.exec(digits), alone = given.bounds.integer || given.said && !unknown || errors?.length ? "" : ", or as 46.7(5) with its u in units of the last digit";
   const meant = EITHER.test(text) ? `: write ${text.replace(",", ".")} or ${text.replace(",", "")}, whichever is meant`
-    : /^[-+.]?[0-9]/.test(text) ? `: write it alone${unit === "1" ? "" : `, in ${unit}`}${alone}` : "";
+    : /^[-+.]?\d/.test(text) ? `: write it alone${unit === "1" ? "" : `, in ${unit}`}${alone}` : "";
   if (!found) return refused(`is not a number${meant}`);
   if (text.length > 100 || Math.abs(Number(found[5] ?? 0)) > 300) return refused("is out of all range");
   if (concise && given.said && !unknown) return { why: `“${text}” says how sure it is, and so does ${given.said}: write ${digits}` };

@@ -2,7 +2,7 @@
 // Nothing in this file knows the page.
 
 const MINUS = "\u2212", THIN = "\u202f", RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-const NUMBER = /^([+-]?)(?:([0-9]+)\.?([0-9]*)|\.([0-9]+))(?:[eE]([+-]?[0-9]+))?$/;
+const NUMBER = /^([+-]?)(?:(\d+)\.?(\d*)|\.(\d+))(?:e([+-]?\d+))?$/i;
 
 // --- fractions of whole numbers --------------------------------------------------------------------------
 
@@ -93,7 +93,7 @@ function figureOf(text, exponent = null) {
 
 // A printed number as it stands; null if it is not plain digits.
 function readFigure(text) {
-  const found = /^(-?)([0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?$/.exec(text);
+  const found = /^(-?)(\d+)(?:\.(\d+))?(?:e([+-]?\d+))?$/i.exec(text);
   if (!found) return null;
   const [, sign, whole, fraction = "", power] = found;
   return { negative: sign === "-", whole, fraction, exponent: power === undefined ? null : Number(power) };
@@ -159,11 +159,11 @@ function shownColumn(values, places) {
   return found.some((figure) => figure && figure.exponent !== null) ? all(true) : found;
 }
 
-const raised = (n) => String(n).replace(/[0-9]/g, (digit) => RAISED[digit]).replace("-", "⁻");
+const raised = (n) => String(n).replace(/\d/g, (digit) => RAISED[digit]).replace("-", "⁻");
 
 // For the eye: a real minus sign, thin spaces in long numbers, a written power of ten.
 function figureText({ negative, whole, fraction, exponent }) {
-  const grouped = whole.length >= 5 ? whole.replace(/\B(?=(?:[0-9]{3})+$)/g, THIN) : whole;
+  const grouped = whole.length >= 5 ? whole.replace(/\B(?=(?:\d{3})+$)/g, THIN) : whole;
   const power = exponent === null ? "" : `\u00a0×\u00a010${raised(exponent)}`;
   return `${negative ? MINUS : ""}${grouped}${fraction && `.${fraction}`}${power}`;
 }

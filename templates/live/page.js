@@ -56,7 +56,7 @@ function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const slug = (label) => label.replace(/[^A-Za-z0-9_.]+/g, "-").replace(/^-+|-+$/g, "") || "x";
+const slug = (label) => label.replace(/[^\w.]+/g, "-").replace(/^-+|-+$/g, "") || "x";
 const cellId = (kind, name, index) => slug(index ? `${kind}-${name}-${index}` : `${kind}-${name}`);
 const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
 

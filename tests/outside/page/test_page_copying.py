@@ -139,6 +139,21 @@ def test_a_column_with_its_unit_behind_each_number_is_pasted(page: Live) -> None
     assert page.cell("x_p", "2").status == "#INPUT!"
 
 
+@pytest.mark.parametrize(
+    ("block", "becomes"),
+    [
+        ("\t\t23.00\n", ["", "", "23.00"]),
+        ("\t0.51\t\n", ["", "0.51", ""]),
+        ("2.300\t\t\n", ["2.300", "", ""]),
+    ],
+)
+def test_one_row_is_pasted_into_its_columns(page: Live, block: str, becomes: list[str]) -> None:
+    """As many rows are; what is empty in a block is empty then."""
+    page.input("v", 2).click()
+    page.paste(block)
+    assert [page.input(name, 2).input_value() for name in ("v", "e", "x_p")] == becomes
+
+
 def test_rows_without_a_number_have_no_place(page: Live) -> None:
     page.input("v", 1).click()
     page.paste("test\tv\n1\t2.3\n2\t2.9\n\t\n3\t3.5\n\t\n4\t4.1\n")
