@@ -131,7 +131,7 @@ def test_a_convention_is_no_explanation_of_a_single_number(tmp_path: Path) -> No
     content = "T,rho,1,0.40904,g/mL\nT,c_m,,0.41309,g/mL\n"
     told = said(tmp_path, "1, exact", "0 g/mL, exact", content)
     assert told[0].startswith("c_m of T is printed 0.41309 for 0.4100")
-    assert sorted(told[-2:]) == ["L was 10.073, not 10", "L_0 was 9.9272, not 10"]
+    assert sorted(told[-2:]) == ["L was 10.073, not 10", "L_0 was 9.9273, not 10"]
 
 
 def test_a_convention_is_told_in_its_own_unit(tmp_path: Path) -> None:

@@ -173,7 +173,7 @@ def test_what_is_off_by_half_a_unit_still_prints_so(
     best = Best(asked.box.start, np.array([1.7161]), mismatch, np.ones(1))
     sought = list[Best]()
 
-    def meet(problem: Problem, box: Box | None, found: Best) -> Best:
+    def meet(problem: Problem, box: Box | None, found: Best, until: float) -> Best:
         sought.append(found)
         return found
 

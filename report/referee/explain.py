@@ -85,7 +85,8 @@ def possibilities(problem: Problem) -> tuple[Explained, ...]:
         exchanged_in_tables,
         exchanged_rows,
     )
-    return tuple(chain.from_iterable(kind(search) for kind in kinds))
+    found = chain.from_iterable(kind(search) for kind in kinds)
+    return tuple(sorted(found, key=lambda each: not each.alone))
 
 
 def _without_near_nothing(found: Sequence[Explained]) -> list[Explained]:
@@ -134,12 +135,13 @@ class Doubts:
         is_misprint = (change.kind, change.source) == ("misprint", INPUT)
         return is_misprint and (change.cell, change.index) in self.exact
 
-    def likelihood(self, each: Explained) -> tuple[int, bool, float, float]:
+    def likelihood(self, each: Explained) -> tuple[int, bool, bool, float, float]:
         """What is likelier comes first: what holds for many numbers or is one slip, then what is met best.
 
         Before all stands what accuses nobody, then one slip where one value alone does not print, or what was
         left out altogether; last stands another number for one that is exact. Of other digits those of the
-        value that alone does not print come first.
+        value that alone does not print come first, and of slips those with which everything comes out while
+        all else is exactly as it is printed.
         """
         change = each.explanation.first
         # A convention with many digits can be made to fit, as the digits of a misprint can.
@@ -153,7 +155,8 @@ class Doubts:
         elif self._is_any_number(change):
             order = 3
         elsewhere = (change.source, change.cell, change.index) != self.its
-        return order, elsewhere, float(in_words(each.explanation.mismatch)), _digits_moved(change)
+        met = float(in_words(each.explanation.mismatch))
+        return order, not each.alone, elsewhere, met, _digits_moved(change)
 
 
 def _is_neglect(change: Change) -> bool:

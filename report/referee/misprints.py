@@ -23,6 +23,8 @@ PIECES = 160
 """Into how many pieces that range is cut."""
 TRIED = 3
 """In how many of them a search begins: where the others have least left to do."""
+INTO, ZOOMS = 16, 12
+"""Into how many smaller ones an interval is cut, and how often: as far as doubles are apart."""
 FURTHEST = 1 << 20
 """Units of the last digit up to which the ways to print a cell are followed."""
 LISTED = 12
@@ -56,7 +58,8 @@ class _Cell:
         if not self.given:
             return problem.reprinted({self.n: printed}), box
         low, high = problem.unknowns[self.n].interval(printed)
-        start = min(max(float(box.start[self.n]), low), high)
+        start = float(box.start[self.n])
+        start = start if low <= start <= high else min(max(float(printed.value), low), high)
         return problem, box.moved([self.n], [low], [high], [start])
 
     def units(self, problem: Problem, point: Array) -> int | None:
@@ -190,46 +193,46 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
             continue
         if cell.given:
             point = freed(search, problem, cell.n)
-            if point is None:
-                continue
         else:
             found = search.conflicts.without(cell.touches)
             assert isinstance(found, Best)
             point = found.point
-        told = _told(cell, problem, problem.box, point)
+        known = None if point is None else _alone(problem, cell, point)
+        told = None if point is None else _told(cell, problem, problem.box, point, known)
         if cell.given:
             told = _with_slips(problem, cell, told)
-        if told is None:
+        if told is not None:
+            alone = cell.given and _comes_out(problem, _at(problem, cell, told.units))
+            yield search.explained([told.change], told.problem, told.box, told.best, alone)
+        elif point is not None:
             search.drop(certain=False)
-        else:
-            yield search.explained([told.change], told.problem, told.box, told.best)
 
 
 def _with_slips(problem: Problem, cell: _Cell, told: _Told | None) -> _Told | None:
     """The same with the slips that explain it as well from elsewhere: what is sought may have several roots.
 
-    A slip stands before any other way to print a given cell.
+    A slip stands before any other way to print a given cell, and before other slips one with which everything
+    comes out while all else is exactly as it is printed.
     """
-    points = {
-        units: _at(problem, cell, units)
-        for units in _slips_of(cell, np.array([]))
-        if not _is_told(cell, told, units)
-    }
-    if not points:
+    ways = [*_slips_of(cell, np.array([]))]
+    if not ways:
         return told
-    ways = [*points]
-    left = _off(problem, problem.restarted(np.stack([*points.values()]))).max(axis=1)
-    hopeful = [ways[n] for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS][:LOOKED_INTO]
+    points = problem.restarted(np.stack([_at(problem, cell, units) for units in ways]))
+    size = _sizes(problem, points)
+    alone = [n for n in np.argsort(size.max(axis=1), kind="stable").tolist() if size[n].max() <= 1]
+    left = (size - _reach(problem)).max(axis=1)
+    hopeful = [n for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS]
+    hopeful = [n for n in hopeful if n not in alone and not _is_told(cell, told, ways[n])][:LOOKED_INTO]
     slipped = [
-        units
-        for units in hopeful
-        if best(*cell.reprinted(problem, problem.box, units), until=1.0).mismatch <= 1
+        n for n in hopeful if best(*cell.reprinted(problem, problem.box, ways[n]), until=1.0).mismatch <= 1
     ]
-    if slipped and (told is None or not is_slip(cell.printed.text, told.change.would_print)):
-        told = _told(cell, problem, problem.box, points[slipped[0]], slipped[0]) or told
+    slipped = [*alone, *slipped]
+    if alone or (slipped and (told is None or not is_slip(cell.printed.text, told.change.would_print))):
+        first = slipped[0]
+        told = _told(cell, problem, problem.box, points[first], ways[first]) or told
     if told is None:
         return None
-    others = (respelt(cell.printed, units).text for units in slipped if not _is_told(cell, told, units))
+    others = (respelt(cell.printed, ways[n]).text for n in slipped if not _is_told(cell, told, ways[n]))
     also = tuple(dict.fromkeys((*others, *told.change.also)))[:LISTED]
     return replace(told, change=replace(told.change, also=also))
 
@@ -256,20 +259,52 @@ def freed(search: Search, problem: Problem, n: int) -> Array | None:
         if now.mismatch <= 1:
             return now.point
     edges = _edges(problem, n)
+    point = _held(problem, n, edges)
+    if point is not None:
+        return point
     pieces = [problem.box.moved([n], [low], [high], [(low + high) / 2]) for low, high in pairwise(edges)]
     alive = search.alive(pieces, problem)
     if not alive:
         search.drop(certain=True)
         return None
-    for place in _promising(problem, n, pieces, alive):
+    for place, start in _promising(problem, n, pieces, alive):
         first, last = _run(place, alive)
-        start = pieces[place].start[n]
         box = problem.box.moved([n], [pieces[first].low[n]], [pieces[last].high[n]], [start])
         box = replace(box, start=problem.restarted(box.start[None])[0])
         now = best(problem, box, until=1.0)
         if now.mismatch <= 1:
             return now.point
     search.drop(certain=False)
+    return None
+
+
+def _held(problem: Problem, n: int, edges: Sequence[float]) -> Array | None:
+    """The same while all else is exactly as it is printed.
+
+    Of one number alone every published value is a curve, and all curves pass what is published between the
+    same two of many numbers. These are followed into ever smaller intervals, to as many digits as there are;
+    a search for the least of the worst ends between curves that turn.
+    """
+    spans = [np.array(edges)]
+    for _ in range(ZOOMS):
+        values = np.concatenate(spans)
+        points = np.tile(problem.box.start, (values.size, 1))
+        points[:, n] = values
+        points = problem.restarted(points)
+        off = problem.mismatch(problem.guessing.evaluate(points))
+        worst = np.nan_to_num(np.abs(off), nan=np.inf, posinf=np.inf).max(axis=1)
+        if worst.min() <= 1:
+            found: Array = points[np.argmin(worst)]
+            return found
+        with np.errstate(invalid="ignore"):
+            change = np.pad(np.abs(np.diff(off, axis=0)), ((1, 1), (0, 0)))
+            change = np.fmax(np.fmax(change[:-2], change[2:]), change[1:-1])  # a curve may turn in between
+            missed = (np.minimum(np.abs(off[1:]), np.abs(off[:-1])) / (1 + change)).max(axis=1)
+        missed[np.cumsum([span.size for span in spans])[:-1] - 1] = np.inf  # between two intervals
+        chosen = np.argsort(missed, kind="stable")[:TRIED]  # what has no value comes last
+        spans = [np.linspace(values[i], values[i + 1], INTO + 1) for i in chosen.tolist() if missed[i] <= 1]
+        if not spans:
+            return None
     return None
 
 
@@ -310,19 +345,25 @@ def _run(place: int, alive: list[int]) -> tuple[int, int]:
     return first, last
 
 
-def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) -> list[int]:
-    """Pieces whose middle leaves least to what the other inputs can do, of neighbours the best."""
+def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) -> list[tuple[int, float]]:
+    """Pieces, and where in them a given cell leaves least to what the others can do, of neighbours the best.
+
+    A search that begins between two solutions may stay there, where no small step is better.
+    """
     problem = problem.guessing
-    points = problem.restarted(np.stack([pieces[place].start for place in alive]))
-    off = np.abs(problem.mismatch(problem.evaluate(points)))
+    share = (np.arange(steps := -(-PIECES // len(alive))) + 0.5) / steps
+    values = np.concatenate([pieces[place].low[n] + pieces[place].width[n] * share for place in alive])
+    points = np.tile(problem.box.start, (values.size, 1))
+    points[:, n] = values
+    off = _sizes(problem, problem.restarted(points))
     every = replace(problem, ignored=frozenset())
     slopes = np.abs(np.nan_to_num(every.slopes(every.at(problem.box.start), problem.box)))
     slopes[:, n] = 0
-    reach = slopes @ (problem.box.width / 2) / problem.half
-    left = np.nan_to_num(off - reach, nan=np.inf, posinf=np.inf).max(axis=1)
+    left = (off - slopes @ (problem.box.width / 2) / problem.half).max(axis=1)
     around = np.concatenate([[np.inf], left, [np.inf]])
-    lowest = [n for n in range(len(alive)) if left[n] <= around[n] and left[n] <= around[n + 2]]
-    return [alive[n] for n in sorted(lowest, key=lambda n: left[n])[:TRIED]]
+    lowest = np.flatnonzero((left <= around[:-2]) & (left <= around[2:]))
+    chosen = lowest[np.argsort(left[lowest], kind="stable")][:TRIED]
+    return [(alive[place // steps], float(values[place])) for place in chosen.tolist()]
 
 
 def slipped(search: Search) -> Iterator[Explained]:
@@ -337,30 +378,49 @@ def slipped(search: Search) -> Iterator[Explained]:
     ]
     if not tried:
         return
-    off = _off(problem, problem.restarted(np.stack([point for _, _, point in tried])))
+    sizes = _sizes(problem, problem.restarted(np.stack([point for _, _, point in tried])))
+    left = sizes - _reach(problem)
     for n, (cell, _, _) in enumerate(tried):
         if not cell.given:
-            off[n, cell.n] = 0.0
-    left = off.max(axis=1)
-    order = [n for n in np.argsort(left, kind="stable").tolist() if left[n] <= HOPELESS]
+            sizes[n, cell.n] = left[n, cell.n] = 0.0
+    alone, left = sizes.max(axis=1) <= 1, left.max(axis=1)
+    order = [n for n in np.lexsort((left, ~alone)).tolist() if left[n] <= HOPELESS]
     texts: dict[_Cell, list[str]] = {}
-    first: dict[_Cell, tuple[Problem, Box, Best]] = {}
-    for cell, units, _ in (tried[n] for n in order[:LOOKED_INTO]):
+    first: dict[_Cell, tuple[Problem, Box, Best, bool]] = {}
+    for n in order[:LOOKED_INTO]:
+        cell, units, _ = tried[n]
         changed, box = cell.reprinted(problem, problem.box, units)
         now = search.met(changed, box)
         if now is not None:
             texts.setdefault(cell, []).append(respelt(cell.printed, units).text)
-            first.setdefault(cell, (changed, box, now))
+            first.setdefault(cell, (changed, box, now, bool(alone[n])))
     for cell, (would, *also) in texts.items():
         yield search.explained([cell.change(problem, would, also, ())], *first[cell])
 
 
-def _off(problem: Problem, points: Array) -> Array:
-    """What points (points, unknowns) leave that the box cannot do by its slopes (points, published)."""
-    here = problem.guessing.at(problem.box.start)
-    reach = np.abs(np.nan_to_num(problem.slopes(here, problem.box))) @ (problem.box.width / 2) / problem.half
-    off = np.abs(problem.mismatch(problem.guessing.evaluate(points))) - reach
+def _alone(problem: Problem, cell: _Cell, point: Array) -> int | None:
+    """How a given cell prints at a point, if everything comes out of that with all else as it is printed."""
+    units = cell.units(problem, point) if cell.given else None
+    return None if units is None or not _comes_out(problem, _at(problem, cell, units)) else units
+
+
+def _comes_out(problem: Problem, point: Array) -> bool:
+    """Whether everything comes out of a point."""
+    return bool(_sizes(problem, problem.restarted(point[None])).max() <= 1)
+
+
+def _sizes(problem: Problem, points: Array) -> Array:
+    """How far everything is from coming out at points (points, unknowns): of shape (points, published)."""
+    off = np.abs(problem.mismatch(problem.guessing.evaluate(points)))
     return np.nan_to_num(off, nan=np.inf, posinf=np.inf)
+
+
+def _reach(problem: Problem) -> Array:
+    """How much of that (published,) the box can do by its slopes."""
+    here = problem.guessing.at(problem.box.start)
+    slopes = np.abs(np.nan_to_num(problem.slopes(here, problem.box)))
+    reach: Array = slopes @ (problem.box.width / 2) / problem.half
+    return reach
 
 
 def _slips_of(cell: _Cell, cells: Array) -> Iterator[int]:

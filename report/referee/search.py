@@ -94,6 +94,8 @@ class Explained:
     problem: Problem
     box: Box
     best: Best
+    alone: bool = False
+    """Whether everything comes out of this change alone, all else being exactly as it is printed."""
 
 
 class Search:
@@ -151,14 +153,15 @@ class Search:
         """An input that yields all values of a changed problem; None, and counted, if there is none.
 
         `box`: that of the printed digits, if left out. `wide`: whether the box is so wide that nothing is
-        certain in it.
+        certain in it: then any such input will do, and a search that comes near none is given up.
         """
-        found = best(problem, box)
+        until = 1.0 if wide else 0.0
+        found = best(problem, box, until)
         if found.mismatch > 1:
             if not wide and Certificate(problem, box).at_least(found.weights) > 1:
                 self.drop(certain=True)
                 return None
-            found = meet(problem, box, found)
+            found = meet(problem, box, found, until)
         if found.mismatch > 1:
             self.drop(certain=False)
             return None
@@ -216,9 +219,11 @@ class Search:
         self.excluded += len(boxes) - len(alive)
         return alive
 
-    def explained(self, changes: Sequence[Change], problem: Problem, box: Box, found: Best) -> Explained:
+    def explained(
+        self, changes: Sequence[Change], problem: Problem, box: Box, found: Best, alone: bool = False
+    ) -> Explained:
         """What changes of the print make of the published values."""
         number = len(self.problem.published)
         come_out = len(problem.published) - len(problem.ignored)
         explanation = Explanation(tuple(changes), found.mismatch, come_out, number)
-        return Explained(explanation, problem, box, found)
+        return Explained(explanation, problem, box, found, alone)

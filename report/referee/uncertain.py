@@ -7,6 +7,7 @@ among the numbers that print as given, each by itself, along the slopes from tho
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -41,6 +42,9 @@ MOST = 10_000_000
 MOST_MOVED = 300
 """Numbers that are looked for at once, at most: each takes an evaluation."""
 _HALVINGS = 40
+
+_SAID = re.compile(r"[uUs] = ([0-9]*\.?[0-9]*)(?:e[+-]?[0-9]+)?(?! ?%)(?=[ ,]|$)|.*\(([0-9]+)\)")
+"""A standard or expanded uncertainty or a standard deviation as it was stated; last digits in parentheses."""
 
 Compute = Callable[[Inputs], Marks]
 """Computes some columns of a sheet for other inputs."""
@@ -99,6 +103,8 @@ class _Asked:
         about, sheet = published.about, self.values.sheet
         if about is None or about.kind in ("low", "high"):
             return None  # draws
+        if (verdict := self.of_rounded(published)) is not None:
+            return verdict
         columns = [sheet[name] for name in (about.cell, about.other) if name]
         above = {each.name for column in columns for each in (column, *sheet.ancestors(column))}
         part = Sheet(tuple(column for column in sheet.columns if column.name in above))
@@ -141,6 +147,24 @@ class _Asked:
             is_ahead = (found - float(printed.value)) * (here - float(printed.value)) > 0
             ends = (share, ends[1]) if is_ahead else (ends[0], share)
         return None
+
+    def of_rounded(self, published: PublishedValue) -> Verdict | None:
+        """The same of stated uncertainties that print as given: authors compute with more digits of them."""
+        about, printed = published.about, published.printed
+        if about is None or about.other or about.kind not in ("u", "U"):
+            return None
+        row = self.values.row(self.values.sheet[about.cell], published.index)
+        budget = self.spread.budget(about.cell, row, about.level)
+        if not budget.u > 0 or budget.second or budget.correlations or budget.tied:
+            return None
+        own = np.array([each.u for each in budget.contributions])
+        rounded = np.array([_rounded(each.source.said) for each in budget.contributions])
+        here, value = self.number(about, published.index, 0.0), float(printed.value)
+        low, high = (here * float(np.linalg.norm(own * (1 + side * rounded))) / budget.u for side in (-1, 1))
+        nearest = min(max(value, low), high)
+        if not (low < high and prints_same(nearest, printed)):
+            return None
+        return Verdict(REACHABLE, low, high, mismatch=abs(nearest - value) / float(printed.half_unit))
 
     def instead(self, published: PublishedValue) -> str:
         """Which of u, U and 2 u prints as another of them was published; empty if none does."""
@@ -213,3 +237,16 @@ class _Asked:
             told = draw(self.inputs, self.values, budget, MOST, step=self.step, tolerance=tolerance)
             self.drawn[key] = told.symmetric
         return self.drawn[key]
+
+
+def _rounded(said: str) -> float:
+    """Which share of it half a unit of the last digit of a stated uncertainty is; else 0.
+
+    >>> _rounded("u = 0.25 mm"), _rounded("12.3(5)"), _rounded("u = 1 % of reading"), _rounded("+-0.1 rect")
+    (0.02, 0.1, 0.0, 0.0)
+    """
+    found = _SAID.match(said)
+    text = (found[1] or found[2]) if found else ""
+    if not text or not float(text):
+        return 0.0
+    return float(f"5e-{len(text.partition('.')[2]) + 1}") / float(text)

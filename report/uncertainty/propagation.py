@@ -297,7 +297,7 @@ class Spread:
         shape, law = assigned(self.sources, own, u, dof, second, self._pairs)
         factor, because = coverage(shape, law, dof, level)
         order = np.argsort(-np.abs(shares), kind="stable")
-        order = order[np.abs(own[order]) > NOTHING * np.abs(own).max()].tolist()
+        order = order[np.abs(own[order]) > NOTHING * np.abs(own).max(initial=0.0)].tolist()
         told = tuple(self._contribution(n, float(own[n]), float(shares[n])) for n in order)
         known = set(order)
         idle = tuple(self._contribution(n, 0.0, 0.0) for n in self._leading_to(name, row) if n not in known)
