@@ -314,6 +314,7 @@ CASES: dict[str, Callable[[], None]] = {
     "LS214": foreign_code,
     "LS215": toml("[published]\n", '[published]\nby = "sauce"\n'),
     "LS216": raises(InputError, "LS216", text="oils.csv", known="standards"),
+    "LS217": toml("[published]", '[uncertainty]\nplus_minus = "rectt"\n[published]'),
     "LS301": lambda: campaign(csv="test,v [m/s],e [1]\n1,2.334,0.530\n2,2.940,0.512\n"),
     "LS302": lambda: campaign(csv=re.sub(r"(?m)^((.*?),.*)$", r"\1,\2", CSV)),
     "LS303": csv("x_p [um]", "x-p [um]"),

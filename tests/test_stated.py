@@ -292,7 +292,7 @@ def test_what_is_shared(read: Read) -> None:
         ("v = 0.1", "LS205", "0.1"),
         ('x_p = "u = 1 um"', "LS433", "x_p"),
         ('points_per_pair = "u = 1"', "LS431", '"u = 1"'),
-        ('plus_minus = "rectt"', "LS203", '"rectt"'),
+        ('plus_minus = "rectt"', "LS217", '"rectt"'),
         *((f"digits = {wrong}", "LS435", wrong) for wrong in ("0", "3", "-1", "true", "2.0", '"2"', "[1]")),
         ("shared = 3", "LS205", "3"),
         ('[uncertainty.shared.a]\nof = "w"\nstated = "u = 1"', "LS505", '"w"'),
@@ -306,6 +306,7 @@ def test_what_is_shared(read: Read) -> None:
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [1]', "LS205", "[1]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = [[]]', "LS205", "[[]]"),
         ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = []', "LS205", "[]"),
+        ('[uncertainty.shared.a]\nof = "v"\nstated = "u = 1"\ngroups = "batch"', "LS303", '"batch"'),
         (
             '[uncertainty.shared.a]\nof = "ball_mass"\nstated = "u = 1 g"\ngroups = [[1]]',
             "LS506",

@@ -122,9 +122,8 @@ def read_bare(tables: TomlTables) -> Shape | None:
     words = [word for word, shape in SHAPES.items() if shape != "normal"]
     if word is None or word in words:
         return SHAPES[word] if word else None
-    path, known, suggestion = (SECTION, "plus_minus"), listing(words), suggest(word, words)
-    at, table = tables.toml.value(*path), ".".join(path)
-    tables.findings.add("LS203", at, text=word, table=table, known=known, suggestion=suggestion)
+    at, known = tables.toml.value(SECTION, "plus_minus"), listing(words)
+    tables.findings.add("LS217", at, text=word, known=known, suggestion=suggest(word, words))
     return None
 
 
@@ -363,9 +362,10 @@ class _Reader:
         """The tests of each word of a column; where there is none, a test is of no group."""
         columns = next(iter(rows.values()))
         if column not in columns:
-            known, like = f"a column of the table: {listing(columns)}", suggest(column, columns)
-            at, table = self.toml.value(*path), ".".join(path)
-            self.findings.add("LS203", at, text=column, table=table, known=known, suggestion=like)
+            lists = "a list of lists of tests: the table has no column of words"
+            known = f"a column of the table: {listing(columns)}" if columns else lists
+            like = suggest(column, columns)
+            self.findings.add("LS303", self.toml.value(*path), text=column, known=known, suggestion=like)
             return None
         found: dict[str, list[int]] = {}
         for test, row in rows.items():

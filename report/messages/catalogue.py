@@ -122,6 +122,9 @@ CATALOGUE: dict[str, Entry] = {
         "a file of its own for each table of rows",
         "the columns of each table stand in its own file, with a row for each of its rows",
     ),
+    "LS217": Entry(
+        "unknown shape", "'{text}' is no shape of an error within limits", "{known}", "{suggestion}"
+    ),
     "LS301": Entry(
         "missing column", "the column{text} missing", hint="add '{example}' to the first line{suggestion}"
     ),
