@@ -73,7 +73,7 @@ class Member(Function):  # type: ignore[misc] # sympy has no types
     `row` and `group`: their running numbers.
     """
 
-    nargs = 2
+    nargs = 2  # sympy asks for it
     is_real = True
     is_nonnegative = True
 

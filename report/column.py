@@ -199,7 +199,8 @@ class Limit:
     """Whether a row outside tells nothing of what it rests on, so that no test is suspected because of it. A
     column that requires the same in the same words leaves it out; what that does is told by the limit."""
     mentioned: ClassVar[Mentioned | None] = None
-    """Of the column that says how far inside a row lies, if only a part of the limit is known."""
+    """Of the column that says how far inside a row lies, if only a part of the limit is known: as
+    ``kept_sheet.py`` has it."""
 
     @classmethod
     def of(cls, equation: Equation) -> Limit:
@@ -257,7 +258,7 @@ class Column:
     alongside: tuple[Column, ...] = ()
     """Columns on the axes that its rule sums over: the sums leave out rows without a value in these, too."""
     mentioned: ClassVar[Mentioned | None] = None
-    """Of a column of which only a part is known."""
+    """Of a column of which only a part is known, as ``kept_sheet.py`` has it."""
 
     @cached_property
     def nonnegative(self) -> bool:

@@ -201,8 +201,7 @@ def _claims(report: Report) -> Iterator[Check]:
 def judged(report: Report, every: bool = True, step: Step = silent) -> Report:
     """The report with its engines compared with 50 digits.
 
-    `every`: whether to run what else is installed too: JavaScript, and the workbook in LibreOffice. `step`:
-    Told what is begun.
+    `every`: whether to run what else is installed too: JavaScript, and the workbook in LibreOffice.
     """
     from .cells.layout import how_large
     from .engines.numpy import evaluate

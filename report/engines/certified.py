@@ -40,7 +40,7 @@ _LARGEST = 200
 def certified(sheet: Sheet, column: Column) -> bool:
     """Whether the form of a root changes sign at most once between its turning points, whatever the inputs.
 
-    `column`: its rule is a :class:`~loopsheet.report.sheet.RootNode`.
+    `column`: its rule is a :class:`~loopsheet.report.column.Root`.
     """
     rule = column.rule
     assert isinstance(rule, Root)

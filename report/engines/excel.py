@@ -65,7 +65,7 @@ class _Cells(Symbol):
     """Cells of rows: in sums and products, they stand behind what is the same for all rows."""
 
     @classmethod
-    def class_key(cls) -> tuple[int, int, str]:
+    def class_key(cls) -> tuple[int, int, str]:  # sympy orders terms by it
         return 5, 0, cls.__name__
 
 

@@ -31,7 +31,8 @@ class ForceLaw:
     imprint: Expr = field(default=Integer(0))
     """The approach at which the bodies part, in terms of :data:`x_max` and constants."""
     pulls: bool = False
-    """Whether a negative force acts; else there is none where the law says less than zero."""
+    """Whether a negative force acts; else there is none where the law says less than zero. No code of
+    ``codes.py`` has such a force: tests show that Tsuji's ratio would return what is typed if one had."""
     where: tuple[tuple[Symbol, Expr], ...] = ()
     """What some of its symbols stand for; each may name those after it."""
 

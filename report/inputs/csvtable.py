@@ -397,7 +397,7 @@ def match_columns(
             told = list(dict.fromkeys(own.get(word, word) for word in known))
             missing = [own.get(word, word) for word in known if word not in names]
             meant[close(name, missing)] += 1  # a misspelt column is one problem, not two
-            suggestion = for_left_out(name) or suggest(name, missing) or _like(name, told)
+            suggestion = for_left_out(name) or suggest(name, missing) or _alike_hint(name, told)
             if not suggestion and len(strange) == len(renamed) == 1:
                 suggestion = f"'{renamed[0]}' is missing: did you mean that?"
                 meant[renamed[0]] += 1
@@ -410,7 +410,8 @@ def match_columns(
     return places
 
 
-def _like(name: str, there: Sequence[str]) -> str:
+def _alike_hint(name: str, there: Sequence[str]) -> str:
+    """What helps with a column whose name is nearly that of one which is there; empty if it is not."""
     said = suggest(name, there).removesuffix("?")
     return said and f"{said}, which is there? if it has words, give it a name less alike"
 

@@ -174,6 +174,8 @@ class _Declaring(type):
     ) -> _Declaring:  # fmt: skip
         """Take what the body declared; the first line of its docstring is the title.
 
+        `rows`, `index`, `size` and `ledger` are those of the body, which was given them before it was read.
+
         Parameters
         ----------
         source : str

@@ -49,7 +49,7 @@ class OverRows(Expr):
     `terms`: in plain symbols, each of which stands for an array. `axis`: the axis' name.
     """
 
-    is_commutative = True
+    is_commutative = True  # sympy asks for it
     is_real = True
 
     def _eval_is_positive(self) -> bool | None:
