@@ -20,9 +20,7 @@ from .fit_checks import LEDGER as CHECKS
 from .soft_impact import law_c, x
 from .symbols import VOCABULARY, F_of, k
 
-XM, XP, W, R, CP, UC, DC, UN = (
-    VOCABULARY[name] for name in ("x_m", "x_p", "W", "R", "Cprime", "u_C", "dC", "u_new")
-)
+XM, XP, R, CP, UC, DC, UN = (VOCABULARY[name] for name in ("x_m", "x_p", "R", "Cprime", "u_C", "dC", "u_new"))
 ALPHA, C, F_0, x_0, S_DD, S_DX, S_XX, Delta = VOCABULARY.plain("alpha C F_0 x_0 S_DD S_DX S_XX Delta")
 c_aa, c_aF, c_FF = VOCABULARY.plain("c_aa c_aF c_FF")
 _A = ALPHA + 1

@@ -44,7 +44,7 @@ _WORDS = Vocabulary(*SHARED.values(), *lankarani_1994.OWN, *power_law.OWN, *OWN)
 e, x_p, R = SHARED.plain("e x_p R_b")
 v_0, v, m_1 = PAPER.plain("v_0 v m_1")
 x_m, peak, predicted = _WORDS.plain("x_m_power F_m_power x_p_power")
-ln_v, ln_e, mean_v, mean_e, b, alpha_e = _WORDS.plain("ln_v ln_e mean_ln_v mean_ln_e e_slope alpha_by_e")
+ln_e, mean_v, mean_e, b, alpha_e = _WORDS.plain("ln_e mean_ln_v mean_ln_e e_slope alpha_by_e")
 recovery, a, asked, pressure, n, over, deceleration = _WORDS.plain(
     "recovery_power a_crater recovery_asked pressure_power meyer_n over_lankarani deceleration_power"
 )

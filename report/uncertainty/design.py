@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,6 @@ from ..workbook import Design
 from .propagation import Spread
 
 Array = NDArray[np.float64]
-K = TypeVar("K")
 
 GRID = 12
 """Intervals of the range at first; then they are halved."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..sheet import Column
     from ..study import Study
 
-OK, FINDINGS, USAGE, BUG = 0, 1, 2, 3
+OK, FINDINGS, BUG = 0, 1, 3  # 2 is the exit code of an error that is told
 
 
 def folder_argument(parser: argparse.ArgumentParser, more: str = "") -> None:
