@@ -236,7 +236,21 @@ class Laid:
         return height(column, self.layouts)
 
 
-class _Run:
+class Numbered:
+    """What printed functions ask of the rows of an axis before there are any values."""
+
+    laid: Laid
+
+    def ordinal(self, axis: str, index: str) -> Array:
+        """A running number of the rows of an axis."""
+        return self.laid.layouts[axis].ordinals[index]
+
+    def size(self, axis: str) -> Array:
+        """How many rows an axis has."""
+        return np.array([self.laid.layouts[axis].size], dtype=np.float64)
+
+
+class _Run(Numbered):
     """One evaluation: what the printed function calls, column by column in the sheet's order.
 
     As long as no cell that is named is in error, nothing is asked of single rows.
@@ -272,14 +286,6 @@ class _Run:
         rows = self.laid.layouts[axis].rows[index]
         # take() keeps the rows of each batch element together in memory, indexing does not.
         return self.value[name].take(rows, axis=-1)
-
-    def ordinal(self, axis: str, index: str) -> Array:
-        """A running number of the rows of an axis."""
-        return self.laid.layouts[axis].ordinals[index]
-
-    def size(self, axis: str) -> Array:
-        """How many rows an axis has."""
-        return np.array([self.laid.layouts[axis].size], dtype=np.float64)
 
     def kept(self, name: str, axis: str) -> Any:
         """The rows of an axis over which the sums of a column run."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from . import elementary
 from .intervals import Intervals
 from .kernels import SAME, Array
-from .numpy import Laid, Program
+from .numpy import Laid, Numbered, Program
 from .numpy_root import RootProgram, RootRows
 from .numpy_rows import Kept, in_groups
 
@@ -131,7 +131,7 @@ class _Every(Kept):
         return self._every(terms).sum(axis=-1, keepdims=True)
 
 
-class _Rows:
+class _Rows(Numbered):
     """What the printed function calls."""
 
     def __init__(self, beside: Beside, data: Mapping[str, Array]) -> None:
@@ -143,14 +143,6 @@ class _Rows:
         """The cells of a column that the rows of an axis name by an index."""
         # Row by row in memory: then a batch of one row is copied as a whole.
         return self.value[name].T.take(self.laid.layouts[axis].rows[index], axis=0).T
-
-    def ordinal(self, axis: str, index: str) -> Array:
-        """A running number of the rows of an axis."""
-        return self.laid.layouts[axis].ordinals[index]
-
-    def size(self, axis: str) -> Array:
-        """How many rows an axis has."""
-        return np.array([self.laid.layouts[axis].size], dtype=np.float64)
 
     def kept(self, _: str, axis: str) -> Any:
         """All rows of an axis."""
