@@ -159,8 +159,7 @@ def _in_order(printed: Printed, low: int, high: int, again: int | None) -> list[
 
     After these slips stands the one that is recomputed: `again`, if there is one.
     """
-    texts = dict.fromkeys(slips(printed.text))
-    slipped = {moved(printed, Fraction(text) * printed.scale + printed.zero) for text in texts}
+    slipped = _slipped(printed)
     middle = (low + high) // 2
     every = range(max(low, middle - LISTED), min(high, middle + LISTED) + 1)
     known = slipped if again is None else {*slipped, again}
@@ -171,6 +170,11 @@ def _in_order(printed: Printed, low: int, high: int, again: int | None) -> list[
 
     near = sorted({*every, *known}, key=order)
     return [units for units in near if low <= units <= high and units]
+
+
+def _slipped(printed: Printed) -> set[int]:
+    """How many units further one slip of the hand prints a number, for each that it may be."""
+    return {moved(printed, Fraction(text) * printed.scale + printed.zero) for text in slips(printed.text)}
 
 
 # --- one cell ---------------------------------------------------------------------------------------------
@@ -426,9 +430,7 @@ def _reach(problem: Problem) -> Array:
 def _slips_of(cell: _Cell, cells: Array) -> Iterator[int]:
     """How many units further one slip prints a cell; a published one only as it is recomputed."""
     own = cell.printed
-    texts = dict.fromkeys(slips(own.text))
-    found = {moved(own, Fraction(text) * own.scale + own.zero) for text in texts}
-    units = sorted(each for each in found if is_slip(own.text, respelt(own, each).text))
+    units = sorted(each for each in _slipped(own) if is_slip(own.text, respelt(own, each).text))
     value = np.nan if cell.given else float(cells[cell.n])
     again = moved(own, Fraction(value)) if np.isfinite(value) else None
     yield from (each for each in units if cell.given or each == again)
