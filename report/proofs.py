@@ -13,7 +13,7 @@ Algebra = tuple[tuple[Proof, ...], tuple[Erratum, ...]]
 """A proof of each equation, and the errata of the print they are about."""
 
 
-def proved(ledger: Ledger, errata: bool, step: Callable[[str], None] = lambda _: None) -> Algebra:
+def proved(ledger: Ledger, errata: bool, step: Callable[[str], None]) -> Algebra:
     """Prove all equations of a ledger.
 
     `errata`: whether to check the print, too. `step`: told what is begun.

@@ -251,8 +251,11 @@ def refereed(report: Report, step: Step = silent, keep: Keep = made_anew) -> Rep
     return with_uncertainties(replace(report, referee=found, comparisons=comparisons), step)
 
 
-def with_uncertainties(report: Report, step: Step = silent) -> Report:
-    """The report with everything that is published of uncertainties beside what is computed."""
+def with_uncertainties(report: Report, step: Step) -> Report:
+    """The report with everything that is published of uncertainties beside what is computed.
+
+    `step`: told what is begun.
+    """
     if not report.inputs.published_u:
         return report
     from .referee.uncertain import compare_uncertainties

@@ -30,9 +30,11 @@ from loopsheet.report.messages.errors import Location
 from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import print_as
 from loopsheet.report.referee.judging import referee
+from loopsheet.report.referee.numbers import numbers_of
 from loopsheet.report.result import verdict_words as words
 from loopsheet.report.result.verdict import INPUT, Explanation, Referee
 from loopsheet.report.sheet import Given, Sheet
+from loopsheet.report.stages import silent
 from loopsheet.report.workbooks.soft_impact import WORKBOOK
 
 UM, ONE = Fraction(1, 10**6), Fraction(1)
@@ -155,7 +157,7 @@ class Campaign:
             tuple(self.published), {},
             {} if self.habits.fit else dict.fromkeys(("alpha_log", "C_log"), Location("")),
         )  # fmt: skip
-        return referee(sheet, inputs, values, data)
+        return referee(sheet, inputs, values, data, silent, lambda: numbers_of(sheet, WORKBOOK.ledger()))
 
 
 @cache

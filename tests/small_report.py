@@ -17,10 +17,12 @@ from loopsheet.report.quantity import Printed
 from loopsheet.report.referee import compare, refereed
 from loopsheet.report.referee.campaign import Campaign
 from loopsheet.report.referee.judging import referee
+from loopsheet.report.referee.numbers import numbers_of
 from loopsheet.report.referee.problem import Problem
 from loopsheet.report.result.result import Comparison
 from loopsheet.report.result.verdict import Referee
 from loopsheet.report.sheet import Sheet
+from loopsheet.report.stages import silent
 from loopsheet.report.workbook import Workbook
 
 SOURCE = """\
@@ -136,7 +138,8 @@ def _asked(
     publish: Publish,
 ) -> tuple[Values, tuple[PublishedValue, ...], Referee]:
     inputs, values, data = _computed(sheet, measured, parameters, publish)
-    return values, inputs.published, referee(sheet, inputs, values, data)
+    told = referee(sheet, inputs, values, data, silent, lambda: numbers_of(sheet, inputs.workbook.ledger()))
+    return values, inputs.published, told
 
 
 def _computed(

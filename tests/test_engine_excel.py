@@ -485,7 +485,7 @@ def cubic(steps: int = 3) -> Column:
 def unrolled(column: Column) -> Unrolled:
     plan = lowered_column(Sheet((a, column)), column)
     (node,) = (each for each in plan.nodes if isinstance(each, RootNode))
-    return unroll(plan, node)
+    return unroll(plan, node, certified=True, times=2)
 
 
 def test_a_root_is_unrolled_in_the_order_of_its_evaluation() -> None:

@@ -77,7 +77,7 @@ class Unrolled:
         return self.node.column
 
 
-def unroll(plan: Plan, node: RootNode, certified: bool = True, times: int = 2) -> Unrolled:
+def unroll(plan: Plan, node: RootNode, certified: bool, times: int) -> Unrolled:
     """Lay the solver of a root out as cells.
 
     `node`: of the plan. `certified`: whether the number of its roots follows from signs for all inputs. No

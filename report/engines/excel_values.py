@@ -18,7 +18,7 @@ from ..plan.adjoints import Adjoint, Term
 from ..plan.kept import of_data
 from ..plan.slopes import NodeDerivatives, with_unknowns
 from ..sheet import Sheet
-from .excel_loops import PASSES, pass_name, passes_of
+from .excel_loops import pass_name, passes_of
 from .kernels import Array
 from .numpy import Laid, Program, again, parts
 from .numpy_adjoints import computed
@@ -111,7 +111,7 @@ def auxiliary_values(values: Values, root: Mapping[str, Any]) -> dict[str, tuple
     return shown | {root["check"]: tuple(check)}
 
 
-def with_passes(values: Values, sheet: Sheet, last: int = PASSES, done: int = 1) -> Values:
+def with_passes(values: Values, sheet: Sheet, last: int, done: int) -> Values:
     """The values with those of the passes of a sheet's loops that have no columns of their own.
 
     `values`: of the sheet and of its :func:`~loopsheet.report.engines.excel_loops.pass_columns`, with as many

@@ -326,7 +326,7 @@ def _of_rows_that_are_gone(
 
 
 def unit_fits(
-    written: str, unit: str, name: str, at: Location | None, findings: Findings, *, width: bool = False
+    written: str, unit: str, name: str, at: Location | None, findings: Findings, *, width: bool
 ) -> bool:
     """Whether a number of a cell may be in a unit; if not, it is told.
 

@@ -36,9 +36,7 @@ KINDS: tuple[tuple[Kind, ...], ...] = (
 """What is tried, in the order of how much it changes: later ones only where the earlier explain nothing."""
 
 
-def explanations(
-    problem: Problem, step: Callable[[str], None] = lambda _: None
-) -> tuple[tuple[Explained, ...], Tried]:
+def explanations(problem: Problem, step: Callable[[str], None]) -> tuple[tuple[Explained, ...], Tried]:
     """Find the smallest changes with which all published values come out.
 
     Parameters

@@ -53,8 +53,8 @@ def referee(
     inputs: Inputs,
     values: Values,
     data: Mapping[str, Any],
-    step: Callable[[str], None] = lambda _: None,
-    numbers: Callable[[], Numbers] | None = None,
+    step: Callable[[str], None],
+    numbers: Callable[[], Numbers],
 ) -> Referee:
     """Judge all published values of a report.
 
@@ -66,8 +66,8 @@ def referee(
         The given columns in SI.
     step : callable
         Told what is begun.
-    numbers : callable, optional
-        Returns the source's numbers of the columns' equations, if they are known.
+    numbers : callable
+        Returns the source's numbers of the columns' equations.
     """
     published = inputs.published
     if not published:
@@ -126,7 +126,7 @@ def referee(
     named: tuple[Relabelled, ...] = ()
     if first is not None or found.mismatch <= 1:
         step("refereeing names of rows and fits")
-        named = labels(whole, numbers() if numbers is not None else _numbers(sheet, inputs), first)
+        named = labels(whole, numbers(), first)
         fit = fits(whole, workbook.fits, first)
     amended, misprints = _amended(campaign, checkable, step)
     told = partial(_told, values)
@@ -208,12 +208,6 @@ def _allowed(
     if found.mismatch > 1:
         return table
     return replace(table, verdict=WITHIN, witness=problem.witness(found.point), because="", out=0)
-
-
-def _numbers(sheet: Sheet, inputs: Inputs) -> Numbers:
-    from .numbers import numbers_of
-
-    return numbers_of(sheet, inputs.workbook.ledger())
 
 
 def _known(inputs: Inputs) -> tuple[Change, ...]:

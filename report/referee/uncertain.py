@@ -54,7 +54,7 @@ def compare_uncertainties(
     inputs: Inputs,
     values: Values,
     computing: Callable[[Sequence[Column]], Compute],
-    step: Callable[[str], None] = lambda _: None,
+    step: Callable[[str], None],
 ) -> tuple[Comparison, ...]:
     """Set everything that is published of uncertainties beside what is computed.
 

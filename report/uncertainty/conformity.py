@@ -32,7 +32,7 @@ def beyond(z: float, shape: Shape, dof: float, law: Law | None = None) -> float:
     return float(beyond_each(np.array([z]), shape, dof, law)[0])
 
 
-def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None = None) -> Array:
+def beyond_each(z: Array, shape: Shape, dof: float, law: Law | None) -> Array:
     """The same of many numbers: one by one they take four times as long."""
     if law is not None:
         # Beyond no limit lies nothing, whatever draws leave open.

@@ -130,7 +130,7 @@ def bars(axes: Axes, ends: Array, colour: str) -> None:
     axes.add_artist(PathPatch(path, fill=False, snap=False, zorder=1.9, edgecolor=colour, linewidth=0.8))
 
 
-def arrowhead(axes: Axes, x: Array, y: Array, part: float, colour: str, *, back: bool = False) -> None:
+def arrowhead(axes: Axes, x: Array, y: Array, part: float, colour: str, *, back: bool) -> None:
     """An arrowhead on a curve at a part of its length, in the order of its points or against it."""
     n = int(part * (len(x) - 1))
     tail, head = (n + 1, n) if back else (n, n + 1)

@@ -70,12 +70,12 @@ def _constants(sheet: Sheet) -> Mapping[Symbol, str]:
 # --- tables -------------------------------------------------------------------------------------------------
 
 
-def _of_all(cells: str, predicted: str = "", varies: bool = False) -> tuple[str, ...]:
-    """The cells of all models that predict something, if it is not one number for all tests."""
+def _of_all(cells: str, predicted: str, varies: bool = False) -> tuple[str, ...]:
+    """The cells of all models that predict something; `varies`: if that is not one number for all tests."""
     return tuple(
         cells.format(model.name)
         for model in MODELS
-        if not predicted or (model.varies(predicted) if varies else predicted in model.predicts)
+        if (model.varies(predicted) if varies else predicted in model.predicts)
     )
 
 

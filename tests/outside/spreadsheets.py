@@ -100,7 +100,7 @@ class Delivered:
                 fixed = column.name in self.counts and cells[0] != block.values[0]
                 data[column.name] = np.array([np.nan if fixed else float(x) for x in numbers])
         first = engine.evaluate(self.whole, self.report.values.given_labels, data, self.program)
-        values = with_passes(first, self.report.sheet, self.grid.passes)
+        values = with_passes(first, self.report.sheet, self.grid.passes, 1)
         changed = {name for (name, row), value in edits.items() if value != self.grid[name].values[row]}
         return self._as_counted(values, changed)
 
