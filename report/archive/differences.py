@@ -173,16 +173,16 @@ def compare(
                 moved.append(((0, *rank), _move(f"U({cell})", word, kind, new, U_was, U_now, True)))
     return Differences(
         *names,
-        same,
-        noise,
-        tuple(move for _, move in sorted(moved, key=lambda item: item[0])),
-        (*_rules(before, after), *_changes(before.proofs, after.proofs)),
-        tuple(_only_in(last, first)),
-        tuple(_only_in(first, last)),
-        tuple(_changes(_called(first), _called(last))),
-        tuple(_changes(_verdicts(first), _verdicts(last))),
-        tuple(_changes(_checks(first, accepted), _checks(last, accepted))),
-        tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
+        same=same,
+        noise=noise,
+        moved=tuple(move for _, move in sorted(moved, key=lambda item: item[0])),
+        method=(*_rules(before, after), *_changes(before.proofs, after.proofs)),
+        added=tuple(_only_in(last, first)),
+        removed=tuple(_only_in(first, last)),
+        rows=tuple(_changes(_called(first), _called(last))),
+        published=tuple(_changes(_verdicts(first), _verdicts(last))),
+        checks=tuple(_changes(_checks(first, accepted), _checks(last, accepted))),
+        order=tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
     )
 
 

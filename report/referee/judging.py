@@ -96,44 +96,59 @@ def referee(
         return Referee(alone, tuple(tables), joint, free=inputs.free)
     near = [value for value, verdict in zip(published, alone, strict=True) if verdict.verdict in NEAR]
     asked = [value for value in near if not value.expect]
-    others: TableVerdict | None = None
-    if joint.verdict not in (EXACT, REACHABLE) and asked and any(value.expect for value in checkable):
-        which = [n for n, value in enumerate(checkable) if value in asked]
-        others = _together(OTHERS, whole, which, certificate, (), ())[0]
+    others = _of_others(whole, asked, joint, certificate)
     if campaign.states:
-        of = {
-            table.source: [value for value in checkable if value.source == table.source] for table in tables
-        }
-        tables = [_allowed(campaign, table, of[table.source], near) for table in tables]
+        for n, table in enumerate(tables):
+            own = [value for value in checkable if value.source == table.source]
+            tables[n] = _allowed(campaign, table, own, near)
         joint = _allowed(campaign, joint, checkable, near)
         others = others and _allowed(campaign, others, asked, near)
-    explained, pinned = tuple[Explained, ...](), tuple[Explained, ...]()
+    explained = slips = pinned = tuple[Explained, ...]()
     tried: Tried | None = None
     there = [value for value in published if not _is_gone(campaign, value)]
     if len(checkable) < len(there):
         # What was published once had a value: a change must give it one.
         whole = Problem.of(campaign, there)
         found = meet(whole)
-    if found.mismatch > 1 and joint.verdict != WITHIN:
-        explained, tried, pinned = _explained(whole, step)
-    slips: tuple[Explained, ...] = ()
     if found.mismatch > 1 and joint.verdict == WITHIN:
         step("refereeing what a habit or one slip would explain")
         slips = possibilities(whole)
-    first = explained[0] if explained else None
-    workbook = inputs.workbook
-    fit: tuple[Fit, ...] = ()
-    named: tuple[Relabelled, ...] = ()
-    if first is not None or found.mismatch <= 1:
+    elif found.mismatch > 1:
+        explained, tried, pinned = _explained(whole, step)
+    named, fit = tuple[Relabelled, ...](), tuple[Fit, ...]()
+    if explained or found.mismatch <= 1:
         step("refereeing names of rows and fits")
+        first = explained[0] if explained else None
         named = labels(whole, numbers(), first)
-        fit = fits(whole, workbook.fits, first)
+        fit = fits(whole, inputs.workbook.fits, first)
     amended, misprints = _amended(campaign, checkable, step)
     told = partial(_told, values)
     return Referee(
-        alone, tuple(tables), joint, told(explained), tried, named, fit,
-        inputs.free, _known(inputs), amended, told(misprints), told(slips), others, told(pinned),
-    )  # fmt: skip
+        values=alone,
+        tables=tuple(tables),
+        joint=joint,
+        explanations=told(explained),
+        tried=tried,
+        labels=named,
+        fits=fit,
+        free=inputs.free,
+        errata=_known(inputs),
+        amended=amended,
+        misprints=told(misprints),
+        slips=told(slips),
+        others=others,
+        pinned=told(pinned),
+    )
+
+
+def _of_others(
+    whole: Problem, asked: Sequence[PublishedValue], joint: TableVerdict, certificate: Certificate
+) -> TableVerdict | None:
+    """The values not known to differ, together, where all do not come out: None without such values."""
+    if joint.verdict in (EXACT, REACHABLE) or not asked or not any(value.expect for value in whole.published):
+        return None
+    which = [n for n, value in enumerate(whole.published) if value in asked]
+    return _together(OTHERS, whole, which, certificate, (), ())[0]
 
 
 def _told(values: Values, explained: Sequence[Explained]) -> tuple[Explanation, ...]:
@@ -272,7 +287,14 @@ def _together(
                 at_least, because = part.at_least or 0, part.source
         word = UNREACHABLE if at_least > 1 or out else NOT_FOUND
     verdict = TableVerdict(
-        source, len(which), word, found.mismatch, at_least if at_least > 1 else None, worst,
-        problem.witness(found.point), because, len(out),
-    )  # fmt: skip
+        source,
+        values=len(which),
+        verdict=word,
+        mismatch=found.mismatch,
+        at_least=at_least if at_least > 1 else None,
+        worst=worst,
+        witness=problem.witness(found.point),
+        because=because,
+        out=len(out),
+    )
     return verdict, found
