@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -12,9 +13,20 @@ from .common import folder_argument, format_argument, keeping_arguments, outcome
 if TYPE_CHECKING:
     from ..messages.diagnostics import Check
     from ..referee.accepting import Accepted
-    from ..result.result import Report
+    from ..result.result import Comparison, Report
 
 HELP = "check the proofs, the engines against each other, and the published values"
+
+_WAYS = {
+    "same": "print{} the same",
+    "known": "differ{} as is known",
+    "reachable": "come{} out of other inputs that print as given",
+    "by printed": "come{} out of rounded numbers as they are printed",
+    "within": "differ{} within the stated uncertainties alone",
+    "missing": "cannot be checked",
+    "rest": "differ{} otherwise",
+}
+"""How published values stand beside what is recomputed: what is told of those of each way."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -107,7 +119,6 @@ def _ask(report: Report) -> None:
 
 
 def _print(report: Report, found: Sequence[Check]) -> None:
-    from ..result.verdict import REACHABLE, WITHIN
     from ..result.verdict_words import lines
 
     passed = sum(p.status.passes for p in report.proofs)
@@ -117,27 +128,15 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     for agreement in report.engines:
         print(f"engine     {agreement.line}")
     every = report.every_comparison
-    same = sum(c.verdict == "same" for c in every)
-    known = sum(bool(c.published.expect) and c.as_expected for c in every)
-    apart = [c for c in every if c.verdict == "differs" and not c.published.expect]
-    other = sum(c.word == REACHABLE and c.as_expected for c in apart)
-    by_printed = sum(c.word not in (REACHABLE, WITHIN) and c.as_expected for c in apart)
-    within = sum(c.word == WITHIN for c in apart)
-    missing = sum(c.verdict == "not-checkable" and not c.published.expect for c in every)
     if every:
-
-        def they(number: int, verb: str) -> str:
-            return f"{number} {verb}{'s' * (number == 1)}"
-
-        nought = sum(c.verdict == "same" and c.says_nothing for c in every)
-        as_nought = f" ({nought} as 0, which says little of a value)" if nought else ""
-        said = [f"{they(same, 'print')} the same{as_nought}", f"{they(known, 'differ')} as is known"]
-        said += [f"{they(other, 'come')} out of other inputs that print as given"] * bool(other)
-        said += [f"{they(by_printed, 'come')} out of rounded numbers as they are printed"] * bool(by_printed)
-        said += [f"{they(within, 'differ')} within the stated uncertainties alone"] * bool(within)
-        said += [f"{missing} cannot be checked"] * bool(missing)
-        rest = len(every) - same - known - other - by_printed - within - missing
-        said += [f"{they(rest, 'differ')} otherwise"] * bool(rest)
+        ways = Counter(map(_way, every))
+        said = [
+            f"{ways[way]} {text.format('s' * (ways[way] == 1))}"
+            for way, text in _WAYS.items()
+            if ways[way] or way in ("same", "known")
+        ]
+        if nought := sum(c.verdict == "same" and c.says_nothing for c in every):
+            said[0] += f" ({nought} as 0, which says little of a value)"
         print(f"published  {len(every)} value{'s' * (len(every) != 1)}: {', '.join(said)}")
     for comparison in every:
         if comparison.verdict != "same":
@@ -151,6 +150,23 @@ def _print(report: Report, found: Sequence[Check]) -> None:
     number = f"{failed or 'no'} finding{'s' * (failed != 1)}"
     told = f"{number}, {warned} warning{'s' * (warned != 1)}" if warned else number
     print(told if failed or warned else "everything as expected")
+
+
+def _way(each: Comparison) -> str:
+    """How a published value stands beside what is recomputed, a key of :data:`_WAYS`."""
+    from ..result.verdict import REACHABLE, WITHIN
+
+    if each.verdict == "same":
+        return "same"
+    if each.published.expect:
+        return "known" if each.as_expected else "rest"
+    if each.verdict == "not-checkable":
+        return "missing"
+    if each.word == WITHIN:
+        return "within"
+    if not each.as_expected:
+        return "rest"
+    return "reachable" if each.word == REACHABLE else "by printed"
 
 
 def _shortly(check: Check) -> Check:
