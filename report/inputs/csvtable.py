@@ -221,22 +221,20 @@ def is_number(text: str) -> bool:
 
 
 def _pointed(source: Source, rows: list[CsvRow], findings: Findings) -> list[CsvRow]:
-    """Rows with decimal points for decimal commas, if it is certain that they are: of columns of numbers."""
+    """Rows with decimal points for decimal commas, in columns of numbers.
+
+    Commas are decimal if no number has a point, which is told if all of them could stand between thousands;
+    or if they outnumber points, and not all of them could. Else what has one is refused where it is read.
+    """
     header, *body = [row for row in rows if not _is_blank(row)] or [CsvRow([], 0)]
-    worded = {
-        place
-        for place, head in enumerate(header.fields)
-        if "[" not in head.text  # dates, or remarks; 'left out' has a reason
-        and any(row.fields[place].text and not _like_number(row.fields[place].text)
-                for row in body if place < len(row.fields))
-    }  # fmt: skip
+    worded = _worded(header, body)
     numbers = [[field for place, field in enumerate(row.fields) if place not in worded] for row in body]
     texts = [field.text for fields in numbers for field in fields]
     commas = [text for text in texts if _COMMA.fullmatch(text)]
     points = [text for text in texts if _POINT.fullmatch(text)]
     doubtful = all(map(_THOUSANDS.fullmatch, commas))
     if not commas or (points and (doubtful or len(points) >= len(commas))):
-        return rows  # what has a comma is refused where it is read
+        return rows
 
     names = [head.text.partition("[")[0].strip() for head in header.fields]
     rows_by_name = [list(zip(names, row.fields, strict=False)) for row in body]
@@ -258,6 +256,16 @@ def _pointed(source: Source, rows: list[CsvRow], findings: Findings) -> list[Csv
         return field._replace(text=_COMMA.sub(r"\g<whole>.\g<rest>", text)) if told else field
 
     return [row._replace(fields=[pointed(*each) for each in enumerate(row.fields)]) for row in rows]
+
+
+def _worded(header: CsvRow, body: Sequence[CsvRow]) -> set[int]:
+    """The places of columns of words: of dates, or remarks; 'left out' has a reason."""
+
+    def has_words(place: int) -> bool:
+        texts = (row.fields[place].text for row in body if place < len(row.fields))
+        return any(text and not _like_number(text) for text in texts)
+
+    return {n for n, head in enumerate(header.fields) if "[" not in head.text and has_words(n)}
 
 
 def _tell_doubtful(source: Source, found: Sequence[tuple[str, Field]], findings: Findings) -> None:
