@@ -72,17 +72,8 @@ def _means(body: MethodBody, results: Iterable[str]) -> Iterator[tuple[str, str]
             yield name, means[rule.expression]
 
 
-def workbook_of(
-    name: str, body: MethodBody, title: str, source: str, headline: Sequence[str], prose: str
-) -> Workbook:
-    """All that it declares.
-
-    Parameters
-    ----------
-    name : str
-        Of the class.
-    """
-    entries = tuple(body.entries)
+def _refuse_undeclared(name: str, body: MethodBody, headline: Iterable[str]) -> None:
+    """Refuse what is named and not declared, and a class that computes nothing."""
     for each in headline:
         if each not in body.columns:
             raise SheetError(f"the headline names {each}, which is not declared", each)
@@ -91,34 +82,55 @@ def workbook_of(
             raise SheetError(
                 f"{announced} is announced as unknown, and neither a root nor a fit finds it", announced
             )
-    if not entries and body.ledger is None:
+    if not body.entries and body.ledger is None:
         raise SheetError(f"{name} computes nothing: it has no let(...), no root(...) and no fit(...)", name)
-    columns = body.whole
-    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
-    Sheet((*columns, *curves.columns))  # a name that both have is told now
+
+
+def _last(sheet: Sheet, body: MethodBody) -> tuple[str, ...]:
+    """The results where no headline says them: what fits find, and single numbers that nothing rests on."""
     # What nothing but a curve rests on is a result all the same.
-    others = (c for c in columns if not isinstance(c.axis, CountedAxis | RepeatAxis))
+    others = (c for c in sheet.columns if not isinstance(c.axis, CountedAxis | RepeatAxis))
     used = {each.name for c in others for each in sheet.precedents(c) if each.name != c.name}
-    scalars = (c.name for c in columns if c.axis is None and c.equation)
-    last = [each for each in scalars if body.of_fits.get(each, each not in used)]
+    scalars = (c.name for c in sheet.columns if c.axis is None and c.equation)
+    return tuple(each for each in scalars if body.of_fits.get(each, each not in used))
+
+
+def _vocabulary(body: MethodBody) -> Vocabulary:
+    """What has limits, for proofs."""
     bounds = {one.name: one.bounds for one in body.inputs} | body.bounds
     limited = (one for one, said in bounds.items() if said.integer or (said.low, said.high) != (None, None))
-    words = Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
-    taken = body.ledger or Ledger((), vocabulary=words)
-    in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
-    given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
-    columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
-    row_tables = [_table_of(axis, body, columns_of) for axis in body.row_axes]
-    used_rows = {one.table for one in columns_of}
+    return Vocabulary(*(_drawn(body.columns[one], bounds[one], one not in body.bounds) for one in limited))
+
+
+def _tables_of_rows(body: MethodBody, columns: Sequence[Measured]) -> Sequence[RowTable]:
+    """The tables in which something is measured: the first one where nothing is."""
+    used = {one.table for one in columns}
     for axis in body.row_axes[1:]:
-        if axis.name not in used_rows:
+        if axis.name not in used:
             of = next((each for each, value in body.items() if value is axis), axis.name)
             said = f"what stands in their table says so, measured(..., of={of})"
             raise SheetError(f"nothing is measured of the {axis.name}: {said}", of)
-    several = tuple(one for one in row_tables if one.name in used_rows)
-    if len(several) < 2:  # the only one needs no name
+    tables = [_table_of(axis, body, columns) for axis in body.row_axes]
+    return [one for one in tables if one.name in used] or tables[:1]
+
+
+def workbook_of(
+    name: str, body: MethodBody, title: str, source: str, headline: Sequence[str], prose: str
+) -> Workbook:
+    """All that a class of that name declares."""
+    _refuse_undeclared(name, body, headline)
+    entries, columns = tuple(body.entries), body.whole
+    sheet, curves = Sheet(columns), Drawn(tuple(body.drawn), body.drawn_given)
+    Sheet((*columns, *curves.columns))  # a name that both have is told now
+    results = tuple(headline) or _last(sheet, body)
+    taken = body.ledger or Ledger((), vocabulary=_vocabulary(body))
+    in_tables = {*body.aside, *(each for spec in body.tables for each in spec.columns)}
+    given_to = tuple(one for one in body.inputs if isinstance(one, Parameter))
+    columns_of = tuple(one for one in body.inputs if isinstance(one, Measured))
+    only, *others = _tables_of_rows(body, columns_of)
+    several = (only, *others) if others else ()
+    if not several:  # the only one needs no name
         columns_of = tuple(replace(each, table="") for each in columns_of)
-    only = several[0] if several else row_tables[0]
     return Workbook(
         name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower(),
         title=title,
@@ -128,11 +140,11 @@ def workbook_of(
         parameters=given_to,
         sheet=lambda names: body.optional.sheet(columns, names),
         either=tuple(body.optional.either),
-        headline=tuple(headline) or tuple(last),
+        headline=results,
         row=only.row,
         least=only.least,
         curves=tuple(body.curves),
-        means=tuple(_means(body, tuple(headline) or tuple(last))),
+        means=tuple(_means(body, results)),
         claims=tuple(body.claims),
         constants=frozenset(body.constants),
         margins=body.margins,
@@ -143,7 +155,7 @@ def workbook_of(
         drawn=(lambda sheet: curves) if curves.columns else None,
         groups=only.groups,
         example=only.example if columns_of else (),
-        several=several if len(several) > 1 else (),
+        several=several,
         example_parameters={
             one.name: body.examples[one.name] for one in given_to if one.name in body.examples
         },
