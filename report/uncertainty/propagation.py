@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -582,35 +583,38 @@ def uncertainties(inputs: Inputs, values: Values, headline: Sequence[str]) -> Un
         All columns, without a batch.
     headline : sequence of str
         The columns whose cells get a budget each; none: those of which nothing else is computed.
-
-    What is passed on to other reports is about these cells, all scalars and, in a workbook of one's own, all
-    columns over the rows of the data: nobody but its author knows which of them is a result.
     """
     spread, sheet = Spread(inputs, values), values.sheet
     used = {precedent.name for column in sheet.columns for precedent in sheet.precedents(column)}
     computed = (c for c in sheet.columns if not isinstance(c.rule, Given))
     last = [c.name for c in computed if c.name not in used and not isinstance(c.axis, CountedAxis)]
-    cells = [(name, row) for name in headline or last for row in range(len(values.status[name]))]
+    every = ((name, row) for name in headline or last for row in range(len(values.status[name])))
+    cells = list(islice(every, MOST_BUDGETS))
     listed = [
         c.name for c in sheet.columns if not isinstance(c.axis, RepeatAxis) or isinstance(c.rule, Given)
-    ]
-    budgets = (spread.budget(name, row) for name, row in cells[:MOST_BUDGETS])
-    scalars = [(c.name, 0) for c in sheet.columns if c.axis is None]
-    rows = [c.name for c in sheet.columns if inputs.own_workbook and c.axis and c.axis.is_given]
-    passed_on = [
-        cell
-        for cell in dict.fromkeys((*cells[:MOST_BUDGETS], *scalars))
-        if cell[0] not in rows and spread.knows(cell[0])
     ]
     variances = {name: spread.variances(name) for name in listed}
     u = {name: np.sqrt(first + second) for name, (first, second) in variances.items()}
     return Uncertainties(
-        {name: np.where(np.isfinite(found), found, np.nan) for name, found in u.items()},
-        tuple(budgets),
-        tuple(map(spread.conformity, inputs.limits)),
-        spread.influence(passed_on, [name for name in rows if spread.knows(name)]),
-        {name: second for name, (_, second) in variances.items()},
-        {name: found for name, found in _misfits(spread, inputs.workbook) if found},
-        spread.second.rough if spread.second else {},
-        {cell: left for cell in cells[:MOST_BUDGETS] if (left := spread.unresolved(*cell))},
+        u={name: np.where(np.isfinite(found), found, np.nan) for name, found in u.items()},
+        budgets=tuple(spread.budget(*cell) for cell in cells),
+        conformities=tuple(map(spread.conformity, inputs.limits)),
+        influence=_passed_on(spread, cells),
+        second={name: second for name, (_, second) in variances.items()},
+        misfits={name: found for name, found in _misfits(spread, inputs.workbook) if found},
+        rough=spread.second.rough if spread.second else {},
+        unresolved={cell: left for cell in cells if (left := spread.unresolved(*cell))},
     )
+
+
+def _passed_on(spread: Spread, cells: Sequence[tuple[str, int]]) -> Influence | None:
+    """What other reports are told: of some cells, all scalars and, in a workbook of one's own, all rows.
+
+    These are columns over the rows of the data: nobody but its author knows which of them is a result.
+    """
+    columns = spread.values.sheet.columns
+    scalars = ((c.name, 0) for c in columns if c.axis is None)
+    rows = [c.name for c in columns if spread.inputs.own_workbook and c.axis and c.axis.is_given]
+    asked = (cell for cell in dict.fromkeys((*cells, *scalars)) if cell[0] not in rows)
+    known = [cell for cell in asked if spread.knows(cell[0])]
+    return spread.influence(known, list(filter(spread.knows, rows)))
