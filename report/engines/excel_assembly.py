@@ -59,16 +59,27 @@ class Assembly:
     """Of worksheets, by index set."""
     sheet: Sheet
     judged: Sheet
+    """The sheet with the margins of its limits."""
     whole: Sheet
+    """The same with what is drawn."""
     layouts: Mapping[str, Layout]
+    """Of the whole sheet."""
     counts: Mapping[str, float]
+    """How often axes repeat, by the scalar that says so."""
     units: Mapping[str, str]
+    """In which columns are shown."""
     first: Sequence[str]
+    """The result."""
     results: Sequence[str]
+    """The same, and other columns whose derivatives have cells."""
     worded: Mapping[str, Sequence[str]]
+    """The columns of words beside the numbers of rows, by index set."""
     thinned: Collection[str]
+    """Drawn columns that have no more cells than dots are drawn."""
     times: int
+    """How often a root's own steps are laid out."""
     last: int
+    """The last pass of a loop that is laid out."""
 
     def __post_init__(self) -> None:
         whole, sheet = self.whole, self.sheet
@@ -135,7 +146,25 @@ class Assembly:
     # --- places
 
     def put_all(self) -> None:
-        """Give every quantity its place."""
+        """Give every quantity its place: further right, or further down, than those before."""
+        self.put_indices()
+        self.put_scalars()
+        given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
+        self.put_given(given)
+        self.put_computed(given)
+        for column in given:
+            self.put(column, grid.checked(column.name))
+        for name, (leaf, axis) in sorted(self.carried.items()):
+            self.places[name] = self.rooms[axis.name].next(
+                self.places[leaf.name].scale, self.places[leaf.name].zero
+            )
+        row = self.put_roots(grid.TOP - 2)
+        for loop in dict.fromkeys(each.loop for each in self.passes.values()):
+            row = self.put_passes(loop, row)
+        self.put_issued(row)
+
+    def put_indices(self) -> None:
+        """The numbers of the rows of every axis, and the words beside them."""
         for axis in self.whole.axes:
             parts = self.layouts[axis.name].labels.shape[1]
             room = self.rooms[axis.name]
@@ -145,13 +174,17 @@ class Assembly:
             elif isinstance(axis, GroupAxis):
                 self.words[room.worksheet] = (room.next(),)
                 self.put_group(axis, self.words[room.worksheet][0])
-        self.put_scalars()
-        given = [c for c in self.whole.columns if c.axis is not None and isinstance(c.rule, Given)]
+
+    def put_given(self, given: Sequence[Column]) -> None:
+        """What is given of rows, then a note on each of their worksheets."""
         for column in given:
             self.put(column, column.name)
         for worksheet in dict.fromkeys(self.places[column.name].worksheet for column in given):
             (room,) = (room for room in self.rooms.values() if room.worksheet == worksheet)
             self.notes[worksheet] = room.next()
+
+    def put_computed(self, given: Sequence[Column]) -> None:
+        """What is computed of rows, then each pass of a loop."""
         for column in self.whole.columns:
             if column.axis is not None and column not in given and column.name not in self.passes:
                 self.put(column, column.name)
@@ -160,13 +193,9 @@ class Assembly:
             for column in self.whole.columns:
                 if column.axis is not None and column.name in own:
                     self.put(column, own[column.name].name)
-        for column in given:
-            self.put(column, grid.checked(column.name))
-        for name, (leaf, axis) in sorted(self.carried.items()):
-            self.places[name] = self.rooms[axis.name].next(
-                self.places[leaf.name].scale, self.places[leaf.name].zero
-            )
-        row = grid.TOP - 2
+
+    def put_roots(self, row: int) -> int:
+        """The parts of each root: of rows on their worksheet, else among the steps below a row."""
         for unrolled in self.unrolled.values():
             over = unrolled.column.axis
             if over is not None:
@@ -174,8 +203,10 @@ class Assembly:
                     self.places[name] = self.rooms[over.name].next()
             else:
                 row = self.put_steps(unrolled, row)
-        for loop in dict.fromkeys(each.loop for each in self.passes.values()):
-            row = self.put_passes(loop, row)
+        return row
+
+    def put_issued(self, row: int) -> None:
+        """What was given as issued, where a root asks for it; single numbers among the steps below a row."""
         for column in self.asked:
             if column.axis is not None:
                 self.put(column, grid.as_issued(column.name))

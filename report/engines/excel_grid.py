@@ -93,8 +93,21 @@ def grid(
     def make(times: int) -> dict[str, Any]:
         from .excel_assembly import Assembly
 
-        told = worksheets, sheet, values.sheet, whole, layouts, counts, units, first, results, beside
-        return Assembly(*told, thinned, times, last).told()
+        return Assembly(
+            worksheets,
+            sheet,
+            judged=values.sheet,
+            whole=whole,
+            layouts=layouts,
+            counts=counts,
+            units=units,
+            first=first,
+            results=results,
+            worded=beside,
+            thinned=thinned,
+            times=times,
+            last=last,
+        ).told()
 
     own = [
         layouts[axis.name].labels.tolist()
