@@ -7,7 +7,7 @@ from typing import Any
 
 from ..cells.grid import FIRST_ROW, SLOPES, STEPS, CellBlock, Grid, Place, letters
 from ..result.result import Report
-from ..sheet import GroupAxis, RepeatAxis
+from ..sheet import Axis, GroupAxis, RepeatAxis
 from .xlsx_inputs import GivenCells
 from .xlsx_marks import TITLE
 from .xlsx_style import Style, height, number_format, said, typical_format
@@ -75,32 +75,9 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     main = [b for b in blocks if b.kind in ("given", "computed") and b.place.row == FIRST_ROW] or list(blocks)
     style.page(sheet, f"{name}: {axis.described}")
     if name in grid.notes:
-        weighed = [block for block in blocks if block.name in report.sheet.weighed]
-        follow = [
-            bool(formula)
-            for block in weighed
-            for formula, number in zip(inputs.shares[block.name], block.values, strict=True)
-            if isinstance(number, float)
-        ]
-        some = " that are no share of a reading" * any(follow)
-        stays = "" if all(follow) else f" but standard uncertainties{some}, which stay as issued"
-        says = f"Type over the yellow cells; all else follows{stays}."
-        style.text(sheet, 1, 0, f"{says} An empty one leaves its {axis.row} out of all sums.", "subtitle")
-        given = [b for b in blocks if b.kind == "given" and b.place.row == FIRST_ROW]
-        says = "whether the given cells are what they may be"
-        _write_head(sheet, style, grid.notes[name].column, _NOTE_WIDTH, "check", says)
-        inputs.write_told(sheet, style, given, grid.notes[name])
-        below = inputs.write_left_out(sheet, style, given, grid.notes[name])
+        below = _write_notes(sheet, name, style, report, grid, inputs)
     words = grid.words.get(name, ())
-    if isinstance(axis, GroupAxis):
-        words_in = report.inputs.on(axis.members.of.name).words(axis.row)
-        numbers = report.values.layouts[axis.name].labels[:, 0]
-        _write_words(sheet, style, words[0], axis.row, [words_in[number - 1] for number in numbers.tolist()])
-    elif words:  # rows made of others have none
-        table = report.inputs.on(axis.name)
-        for place, column in zip(words, table.remarks, strict=False):
-            texts = [table.texts[test][column] for test in table.tests]
-            _write_words(sheet, style, place, column, texts)
+    _write_all_words(sheet, style, report, axis, words)
     for block in blocks:
         if block.place.row == FIRST_ROW:
             _write_header(sheet, style, report, block)
@@ -125,6 +102,40 @@ def write_axis(sheet: Any, name: str, style: Style, report: Report, grid: Grid, 
     sheet.ignore_errors({"formula_differs": every, **({"number_stored_as_text": every} if words else {})})
     sheet.repeat_rows(_NAME, _SYMBOL)
     sheet.print_area(0, 0, FIRST_ROW + size - 1 + below, max(b.place.column for b in main))
+
+
+def _write_notes(sheet: Any, name: str, style: Style, report: Report, grid: Grid, inputs: GivenCells) -> int:
+    """Write what is told of given cells, and what is left out below them; how many rows that takes."""
+    note, row = grid.notes[name], grid.axes[name].row
+    weighed = [block for block in grid.on(name) if block.name in report.sheet.weighed]
+    follow = [
+        bool(formula)
+        for block in weighed
+        for formula, number in zip(inputs.shares[block.name], block.values, strict=True)
+        if isinstance(number, float)
+    ]
+    some = " that are no share of a reading" * any(follow)
+    stays = "" if all(follow) else f" but standard uncertainties{some}, which stay as issued"
+    says = f"Type over the yellow cells; all else follows{stays}."
+    style.text(sheet, 1, 0, f"{says} An empty one leaves its {row} out of all sums.", "subtitle")
+    given = [b for b in grid.on(name) if b.kind == "given" and b.place.row == FIRST_ROW]
+    says = "whether the given cells are what they may be"
+    _write_head(sheet, style, note.column, _NOTE_WIDTH, "check", says)
+    inputs.write_told(sheet, style, given, note)
+    return inputs.write_left_out(sheet, style, given, note)
+
+
+def _write_all_words(sheet: Any, style: Style, report: Report, axis: Axis, words: Sequence[Place]) -> None:
+    """Write the words beside the numbers of rows, in their places."""
+    if isinstance(axis, GroupAxis):
+        words_in = report.inputs.on(axis.members.of.name).words(axis.row)
+        numbers = report.values.layouts[axis.name].labels[:, 0]
+        _write_words(sheet, style, words[0], axis.row, [words_in[number - 1] for number in numbers.tolist()])
+    elif words:  # rows made of others have none
+        table = report.inputs.on(axis.name)
+        for place, column in zip(words, table.remarks, strict=False):
+            texts = [table.texts[test][column] for test in table.tests]
+            _write_words(sheet, style, place, column, texts)
 
 
 def mark_errors(
