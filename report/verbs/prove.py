@@ -20,19 +20,21 @@ if TYPE_CHECKING:
     Proved = tuple[tuple[Proof, ...], tuple[Erratum, ...]]
     Algebra = tuple[Ledger, Callable[[list[str] | None, Step], Proved]]
 
+FAMILIES = ("damping", "damped-loop")
+"""Ledgers of contacts that no workbook computes: forces of simulation codes, law (3) with damping."""
 HELP = "prove the algebra of a workbook, or show the proof of one equation"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what it takes."""
     parser.add_argument("equation", metavar="EQUATION", nargs="?", help="its number, for example (11) or 12a")
-    folder_argument(parser, ", 'damping' or 'damped-loop' for models of contacts that no workbook computes")
+    of = " or ".join(f"'{word}'" for word in FAMILIES)
+    folder_argument(parser, f", {of} for models of contacts that no workbook computes")
     keeping_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Prove, and print one line an equation, or all steps of one."""
-    from ...derivations.contact.families import FAMILIES, family
     from ..inputs.folders import WORD, is_report
     from ..messages.errors import UsageError, diagnose, suggest
 
@@ -40,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     if word and options.folder is None and (word in (WORD, *FAMILIES) or is_report(Path(word))):
         options.equation, options.folder = None, word  # no equation has such a name
     beside = options.folder in FAMILIES and not is_report(Path(options.folder))
-    ledger, prove = _beside(family(options.folder)) if beside else _folder(options.folder)
+    ledger, prove = _beside(_family(options.folder)) if beside else _folder(options.folder)
     labels = [equation.label for equation in ledger.equations()]
     wanted: list[str] | None = None
     if options.equation:
@@ -62,6 +64,12 @@ def run(options: argparse.Namespace) -> int:
     failed = [proof for proof in shown if not proof.status.passes]
     print(f"{len(shown) - len(failed)} of {len(shown)} stand")
     return FINDINGS if failed else OK
+
+
+def _family(word: str) -> Ledger:
+    from ...derivations.contact import damped_loop, damping
+
+    return damping.LEDGER if word == FAMILIES[0] else damped_loop.LEDGER
 
 
 def _folder(folder: str | None) -> Algebra:
