@@ -268,44 +268,56 @@ def split(text: str, mark: str) -> Iterator[tuple[str, int]]:
 
 def _part(text: str, start: int, unit: ParsedUnit, bare: Shape | None, of: Of) -> _Part:
     (first, _), *others = [(field, start + place) for field, place in split(text, ",")]
-    begin = _NAMED.match(first)
-    name = begin["name"] if begin else ""
-    if text == _EXPONENTIAL or name == "samples":
+    named = _NAMED.match(first)
+    if text == _EXPONENTIAL or (named and named["name"] == "samples"):
         if not of.numbers:
             raise StatementError(
                 "LS431", text, start, "what cells share is an error around 0: state its size"
             )
         return _itself(text) if text == _EXPONENTIAL else _drawn(text, start, of)
-    if begin and name not in _KEYS:
-        raise StatementError("LS431", first, start, f"begin with the uncertainty itself: {EXAMPLE}")
-    limits = _LIMITS.match(first)
-    if not (begin or limits or re.search("%|ppm|digit", first)):
-        raise StatementError("LS431", text, start, "say what the number is: u = or U =, or +- and a shape")
-    if others and others[0][0][:1].isdigit():
-        raise StatementError("LS431", *others[0], f"a decimal comma? write {first}.{others[0][0]}")
-    if begin and _CALLED.search(first):
-        hint = "what follows another formula than a share of the reading stands beside it, in a column u(...)"
-        raise StatementError("LS431", first, start, hint)
-    word = None if begin else _SHAPE.search(first)
-    opened = begin or limits
-    begins = opened.end() if opened else 0
+    name, begins = _begun(named, first, text, start, others)
+    word = None if name else _SHAPE.search(first)
     size = first[begins : word.start() if word else None]
     absolute, relative, digits = _amount(size, start + begins, unit)
     cut = [(field, place) for field, place in others if name in _CUT and _END.match(field)]
     others = [each for each in others if each not in cut]
-    for field, place in others:
-        if field in SHAPES and not begin:
-            hint = f"a shape stands behind the size, without a comma: {first} {field}"
-            if SHAPES[field] is Shape.NORMAL:
-                hint = f"if it is a standard uncertainty, write u = {size.strip()}; else {hint}, k = 2"
-            raise StatementError("LS431", field, place, hint)
-    keys = dict(_keys(others, _KEYS[name] if begin else _LIMIT_KEYS))
+    if not name:
+        _refuse_shapes(first, size, others)
+    keys = dict(_keys(others, _KEYS[name] if name else _LIMIT_KEYS))
     shape, divisor = _meant(first, start, name, word and SHAPES[word["shape"]], keys, bare)
     dof = float(keys.get("dof", keys["n"] - 1 if name == "s" else inf))
     if shape is Shape.NORMAL and dof < inf:
         shape = Shape.STUDENT  # JCGM 101, 6.4.9
     part = _Part(absolute, relative, digits, divisor, shape, dof, text)
     return _cut(part, cut, unit, of) if cut else part
+
+
+def _begun(
+    named: re.Match[str] | None, first: str, text: str, start: int, others: Sequence[tuple[str, int]]
+) -> tuple[str, int]:
+    """The name of what is stated, empty behind a sign and of a share, and where its size begins."""
+    if named and named["name"] not in _KEYS:
+        raise StatementError("LS431", first, start, f"begin with the uncertainty itself: {EXAMPLE}")
+    limits = _LIMITS.match(first)
+    if not (named or limits or re.search("%|ppm|digit", first)):
+        raise StatementError("LS431", text, start, "say what the number is: u = or U =, or +- and a shape")
+    if others and others[0][0][:1].isdigit():
+        raise StatementError("LS431", *others[0], f"a decimal comma? write {first}.{others[0][0]}")
+    if named and _CALLED.search(first):
+        hint = "what follows another formula than a share of the reading stands beside it, in a column u(...)"
+        raise StatementError("LS431", first, start, hint)
+    opened = named or limits
+    return named["name"] if named else "", opened.end() if opened else 0
+
+
+def _refuse_shapes(first: str, size: str, others: Sequence[tuple[str, int]]) -> None:
+    """Refuse a shape that stands behind a comma."""
+    for field, place in others:
+        if field in SHAPES:
+            hint = f"a shape stands behind the size, without a comma: {first} {field}"
+            if SHAPES[field] is Shape.NORMAL:
+                hint = f"if it is a standard uncertainty, write u = {size.strip()}; else {hint}, k = 2"
+            raise StatementError("LS431", field, place, hint)
 
 
 def _itself(text: str) -> _Part:
