@@ -4,6 +4,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -191,6 +192,23 @@ def find_program(*names: str) -> str:
 def require() -> Callable[..., str]:
     """Give `require("latexmk")`, or `require("chromium", "chromium-browser")` where names differ."""
     return find_program
+
+
+@pytest.fixture
+def every_engine(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Give `every_engine(folder)`: what `check` tells, in which all three engines are within their bounds."""
+
+    def check(folder: Path, code: int = 0) -> str:
+        from loopsheet.report.cli import main
+
+        find_program("node")
+        find_program("soffice", "libreoffice")
+        assert main(["check", str(folder)]) == code
+        told = capsys.readouterr().out
+        assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+        return told
+
+    return check
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ import grouped
 import numpy as np
 import pytest
 
-from loopsheet.report.cli import main
 from loopsheet.report.messages.errors import InputError
 from loopsheet.report.result.findings import checks as every_check
 from loopsheet.report.study import Study
@@ -49,13 +48,8 @@ def test_a_line_through_the_standards_is_read_off_for_all(tmp_path: Path) -> Non
     assert values.scalar("all_of_them") / 1e3 == pytest.approx((y / c).mean(), rel=1e-14)  # of what has both
 
 
-def test_it_is_as_expected_in_every_engine(
-    tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    require("node")
-    require("soffice")
-    assert main(["check", str(_write(tmp_path, "c"))]) == 0
-    told = capsys.readouterr().out
+def test_it_is_as_expected_in_every_engine(tmp_path: Path, every_engine: Callable[..., str]) -> None:
+    told = every_engine(_write(tmp_path, "c"))
     assert told.count("eps x condition") == 3
     assert told.endswith("everything as expected\n")
 

@@ -1,6 +1,5 @@
 """Roots whose equations name rows and their groups, in every engine."""
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -49,15 +48,11 @@ def of_group(taken: Callable[..., float], rows: bool) -> np.ndarray:
     ],
 )
 def test_a_root_of_rows_or_groups_is_that_of_each(
-    tmp_path: Path, require: Callable[..., str], capsys: pytest.CaptureFixture[str],
+    tmp_path: Path, every_engine: Callable[..., str],
     left: str, right: str, factor: np.ndarray, known: np.ndarray,
 ) -> None:  # fmt: skip
-    require("node")
-    require("soffice")
     folder = grouped.write(tmp_path, ROWS, "s,y [1]", METHOD.format(left, right))
-    assert main(["check", str(folder)]) == 0
-    told = capsys.readouterr().out
-    assert re.findall(r"engine +(\w+) .* at most [\d.]+ eps", told) == ["numpy", "JavaScript", "xlsx"]
+    every_engine(folder)
     found = Study(folder).computed.values.value["q"]
     expected = [
         brentq(lambda q, a=a, c=c: q**3 + a * q - c, 0, 50, xtol=1e-14)
