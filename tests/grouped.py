@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from helpers import method_folder
 
 DATA: dict[str, dict[str, Any]] = tomllib.loads(
     (Path(__file__).resolve().parent / "strd" / "variance.toml").read_text(encoding="utf-8")
@@ -73,15 +74,8 @@ def write(
     more: str = "",
 ) -> Path:
     """A folder of these readings, each a word and a number."""
-    path.mkdir(exist_ok=True)
-    (path / "workbook.py").write_text(code, encoding="utf-8")
     text = "\n".join(",".join((str(n), *row)) for n, row in enumerate(rows, start=1))
-    (path / "measurements.csv").write_text(f"reading,{head}\n{text}\n", encoding="utf-8")
-    (path / "report.toml").write_text(
-        f'title = "Instruments"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n{more}',
-        encoding="utf-8",
-    )
-    return path
+    return method_folder(path, code, f"reading,{head}\n{text}\n", f'title = "Instruments"\n{more}')
 
 
 def certified(name: str, path: Path) -> Path:

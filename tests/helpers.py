@@ -1,6 +1,7 @@
 """What tests of several files share."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from sympy import Expr, Symbol
@@ -20,6 +21,32 @@ def whole(name: str) -> Symbol:
 def formula(name: str, expression: Expr, axis: Axis | None = None, positive: bool = False) -> Column:
     equation = Equation("(1)", (Symbol(name), expression), "")
     return Column(name, axis, Formula(equation), positive=positive)
+
+
+def method_folder(place: Path, code: str, rows: str = "", more: str = "", published: str = "") -> Path:
+    """Write a report folder with a method of its own, and return it.
+
+    Parameters
+    ----------
+    place : Path
+    code : str
+        Its workbook.py.
+    rows : str
+        The whole measurements.csv; without, there is none.
+    more : str
+        What else report.toml says, before its tables are named: a title first, then sections.
+    published : str
+        The whole published.csv; without, there is none.
+    """
+    place.mkdir(parents=True, exist_ok=True)
+    toml = f'workbook = "workbook.py"\n{more}'
+    for name, text in {"measurements": rows, "published": published}.items():
+        if text:
+            toml += f'[{name}]\nfile = "{name}.csv"\n'
+            (place / f"{name}.csv").write_text(text, encoding="utf-8")
+    (place / "report.toml").write_text(toml, encoding="utf-8")
+    (place / "workbook.py").write_text(code, encoding="utf-8")
+    return place
 
 
 def number_for(e: float) -> float:

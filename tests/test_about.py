@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from small_report import FILES, end_gauge
 
 from loopsheet.report.cli import main
@@ -171,19 +172,26 @@ def test_digits_were_cut_off_of_what_is_said_to_be_truncated(
     assert len(found) == differs
 
 
+TWO = """\
+from loopsheet import Method, given, let
+
+
+class Two(Method):
+    a = given("1", "one")
+    b = given("1", "other")
+    y = let(a + b, "sum")
+"""
+
+
 @pytest.mark.parametrize(
     ("text", "same"),
     [("6.86", True), ("6.9", True), ("7", True), ("6", True), ("6.80", False), ("5", False), ("8", False)],
 )
 def test_degrees_of_freedom_are_printed_truncated_or_before(tmp_path: Path, text: str, same: bool) -> None:
     """Two equal errors of 4 and 3 degrees of freedom have 4 / (1/4 + 1/3) = 6.857 (JCGM 100, G.2b)."""
-    code = "from loopsheet import Method, given, let\n\nclass Two(Method):\n    'A sum.'\n"
-    code += "    a = given('1', 'one')\n    b = given('1', 'other')\n    y = let(a + b, 'sum')\n"
-    (tmp_path / "workbook.py").write_text(code)
     errors = 'a = "1.00, u = 0.01, dof = 4"\nb = "1.00, u = 0.01, dof = 3"\n'
-    toml = f'workbook = "workbook.py"\n[parameters]\n{errors}[published]\nfile = "published.csv"\n'
-    (tmp_path / "report.toml").write_text(toml)
-    (tmp_path / "published.csv").write_text(f"{HEADER}\nT,dof(y),,{text},1,,,\n")
+    published = f"{HEADER}\nT,dof(y),,{text},1,,,\n"
+    method_folder(tmp_path, TWO, more=f"[parameters]\n{errors}", published=published)
     (found,) = Study(tmp_path).refereed.comparisons_u
     assert (found.verdict == "same") is same
 
@@ -193,14 +201,8 @@ def test_degrees_of_freedom_are_looked_for_as_they_are_printed(
     tmp_path: Path, text: str, reached: bool
 ) -> None:
     """Of two numbers of which u is a share: these print as given while their ratio changes."""
-    code = "from loopsheet import Method, given, let\n\nclass Two(Method):\n    'A sum.'\n"
-    code += "    a = given('1', 'one')\n    b = given('1', 'other')\n    y = let(a + b, 'sum')\n"
-    (tmp_path / "workbook.py").write_text(code)
-    toml = (
-        'workbook = "workbook.py"\n[parameters]\na = "1.0"\nb = "0.1"\n[published]\nfile = "published.csv"\n'
-    )
-    toml += '[uncertainty]\na = "u = 20 % of reading, dof = 2"\nb = "u = 20 % of reading, dof = 2"\n'
-    (tmp_path / "report.toml").write_text(toml)
-    (tmp_path / "published.csv").write_text(f"{HEADER}\nT,dof(y),,{text},1,,,\n")
+    stated = '[parameters]\na = "1.0"\nb = "0.1"\n'
+    stated += '[uncertainty]\na = "u = 20 % of reading, dof = 2"\nb = "u = 20 % of reading, dof = 2"\n'
+    method_folder(tmp_path, TWO, more=stated, published=f"{HEADER}\nT,dof(y),,{text},1,,,\n")
     (found,) = Study(tmp_path).refereed.comparisons_u
     assert (found.verdict == "same" or found.refereed is not None) is reached

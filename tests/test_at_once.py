@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from test_method import folder
+from helpers import method_folder
 
 from loopsheet.report.at_once import at_once
 from loopsheet.report.cli import main
@@ -68,7 +68,7 @@ def test_what_words_return_has_no_number_yet() -> None:
 
 def test_all_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code = f"{HEAD}    R = let(np.mean(i), 'mean')\n    if U == 5: S = let(U, 'five')\n"
-    assert main(["check", str(folder(tmp_path, code, 'U = "5.0 V"\n'))]) == 2
+    assert main(["check", str(method_folder(tmp_path, code, more='[parameters]\nU = "5.0 V"\n'))]) == 2
     told = capsys.readouterr().err
     assert re.findall(r"workbook\.py:(\d+)", told) == ["11", "12"]
     assert "np.mean(...) would work on the name, not on its numbers" in told

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from helpers import told
+from helpers import method_folder, told
 
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
@@ -268,10 +268,8 @@ class Clock(Method, headline="f"):
 @pytest.fixture
 def clock(tmp_path: Path) -> Path:
     """A frequency that is known to less than the last bit of a double of it."""
-    (tmp_path / "workbook.py").write_text(CLOCK)
     stated = '[parameters]\nf_Sr = "429228004229872.99 Hz, u = 0.08 Hz"\nc = "1.1, +-0.1 rect"\n'
-    (tmp_path / "report.toml").write_text(f'workbook = "workbook.py"\n{stated}')
-    return tmp_path
+    return method_folder(tmp_path, CLOCK, more=stated)
 
 
 def test_an_uncertainty_below_the_last_bit_of_its_value_is_one(

@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from helpers import method_folder
 from small_report import end_gauge
 
 from loopsheet.report.inputs.inputs import Inputs
@@ -223,16 +224,9 @@ def test_what_is_off_by_a_power_of_ten_is_told_so(tmp_path: Path, published: str
     ],
 )
 def test_a_temperature_in_the_other_unit_is_told_so(tmp_path: Path, published: str, hint: str) -> None:
-    (tmp_path / "workbook.py").write_text(
-        "from loopsheet import Method, let, mean, measured\n\n\n"
-        'class Bath(Method):\n    T = measured("degC", "bath")\n    T_m = let(mean(T), "its mean", "degC")\n',
-        encoding="utf-8",
-    )
-    (tmp_path / "d.csv").write_text("T [degC]\n21.4\n21.6\n", encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n[published]\nfile = "p.csv"\n',
-        encoding="utf-8",
-    )
-    (tmp_path / "p.csv").write_text(f"source,cell,index,value,unit\nA,T_m,,{published}\n", encoding="utf-8")
+    code = "from loopsheet import Method, let, mean, measured\n\n\nclass Bath(Method):\n"
+    code += '    T = measured("degC", "bath")\n    T_m = let(mean(T), "its mean", "degC")\n'
+    printed = f"source,cell,index,value,unit\nA,T_m,,{published}\n"
+    method_folder(tmp_path, code, "T [degC]\n21.4\n21.6\n", published=printed)
     (said,) = (c.message for c in checks(Study(tmp_path).computed) if c.kind == "published")
     assert hint in said

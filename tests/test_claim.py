@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from test_method import folder as method_folder
+from helpers import method_folder
 
 from loopsheet.derivations.proof import prove
 from loopsheet.derivations.proved import Proof, ProofStatus
@@ -153,11 +153,8 @@ def test_what_is_left_by_weight_is_proved_of_stated_weights(more: str) -> None:
 
 def folder(path: Path, line: str) -> Path:
     code = f'{WORDS}\n\nclass Claimed(Method):\n    """Claims."""\n\n{BODY}    {line}\n'
-    (path / "workbook.py").write_text(code, encoding="utf-8")
-    (path / "m.csv").write_text("reading,x [m],y [V]\n1,1.0,2.0\n2,2.0,3.1\n3,3.5,4.2\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[parameters]\nL = "2.0 m"\n[measurements]\nfile = "m.csv"\n'
-    (path / "report.toml").write_text(toml, encoding="utf-8")
-    return path
+    rows = "reading,x [m],y [V]\n1,1.0,2.0\n2,2.0,3.1\n3,3.5,4.2\n"
+    return method_folder(path, code, rows, '[parameters]\nL = "2.0 m"\n')
 
 
 @pytest.mark.parametrize(("right", "code"), [("0", 0), ("mean(x)", 1)])
@@ -209,12 +206,9 @@ def test_what_is_proved_must_hold_of_the_data(tmp_path: Path, capsys: pytest.Cap
         "    a = let(mean(y), 'mean')\n    b = let(mean(s**2), 'the same')\n    claim(a, b, 'means')\n"
         "    claim(s**2, y, 'of each row')\n"
     )
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = 'title = "T"\nworkbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(f'{toml}[expected]\n"s[1]" = "below"\n', encoding="utf-8")
-    table = tmp_path / "m.csv"
     for first, found in (("-0.1", 1), ("0.1", 0)):
-        table.write_text(f"test,y [1]\n1,{first}\n2,1.9\n3,1.2\n", encoding="utf-8")
+        rows = f"test,y [1]\n1,{first}\n2,1.9\n3,1.2\n"
+        method_folder(tmp_path, code, rows, '[expected]\n"s[1]" = "below"\n')
         own = {c.name: c.passed for c in Study(tmp_path).computed.oddities if c.kind == "claim"}
         assert own == {"(4)": not found, "(5)": True}
         if found:
@@ -230,10 +224,9 @@ def test_a_claim_that_has_no_value_of_these_data_is_told(tmp_path: Path) -> None
         "class Parts(Method):\n    x = measured('m', 'first')\n    y = measured('m', 'second')\n"
         "    s = let(x + y, 'sum')\n    claim((x**2 - y**2) / (x - y), s, 'quotient')\n"
     )
-    method_folder(tmp_path, code, '[measurements]\nfile = "m.csv"\n')
     for second, told in (("2.0", "(2), quotient, has no value for these data in row 2"), ("2.5", "")):
-        (tmp_path / "m.csv").write_text(f"test,x [m],y [m]\n1,1.0,3.0\n2,2.0,{second}\n", encoding="utf-8")
-        study = Study(tmp_path)
+        rows = f"test,x [m],y [m]\n1,1.0,3.0\n2,2.0,{second}\n"
+        study = Study(method_folder(tmp_path, code, rows))
         assert all(proof.status.passes for proof in study.proved.proofs)
         (check,) = (c for c in study.computed.oddities if c.kind == "claim")
         assert (check.passed, check.note) == (True, "warning" if told else "")
@@ -249,7 +242,7 @@ def test_a_whole_number_is_drawn_as_one(tmp_path: Path) -> None:
         "    claim(cos(pi * n), 1, 'half turns')\n    claim((m - 1) * (m - 2), 0, 'one or two')\n"
         "    claim(m, 1, 'one')\n"
     )
-    study = Study(method_folder(tmp_path, code, 'n = "4"\nm = "1"\n'))
+    study = Study(method_folder(tmp_path, code, more='[parameters]\nn = "4"\nm = "1"\n'))
     found = {proof.equation.title: proof.status for proof in study.proved.proofs}
     assert {said: found[said] for said in ("whole turns", "half turns", "one or two", "one")} == {
         "whole turns": ProofStatus.UNDECIDED,

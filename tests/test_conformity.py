@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import openpyxl
 import pytest
-from helpers import told
+from helpers import method_folder, told
 from hypothesis import given
 from hypothesis import strategies as st
 from test_budget import FILES
@@ -198,12 +198,9 @@ def test_what_the_law_of_propagation_does_not_tell_is_drawn(
 ) -> None:
     """A product of two normal errors around zero has the density K0(y) / pi: 0.896 below 1, and not 0.841."""
     product = SUM.replace("sum(c.symbol for c in x)", "x[0].symbol * x[1].symbol")
-    (tmp_path / "workbook.py").write_text(product, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
     stated = "".join(f'x_{n} = "0.0, u = 1"\n' for n in range(1, 5))
     limits = '[limits]\ny = "<= 1"\n[limits.rule]\nguard = "U"\nlevel = "90 %"\n'
-    toml = f'workbook = "workbook.py"\n[parameters]\n{stated}[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml + limits, encoding="utf-8")
+    method_folder(tmp_path, product, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{stated}{limits}")
     own = json.loads(told(capsys, "y", str(tmp_path), "--format", "json"))["conformity"]
     assert own["above"] == pytest.approx(float(0.5 - half_of_a_product(1)), abs=0.007)
     level = mpmath.findroot(lambda y: 2 * half_of_a_product(y) - 0.9, 1.6)  # 1.60; of a normal one 1.64
@@ -218,13 +215,9 @@ def test_what_the_law_of_propagation_does_not_tell_is_drawn(
 
 def of_two(tmp_path: Path, first: str, second: str, limit: str) -> str:
     """A folder whose y is a sum of two numbers, with a limit."""
-    (tmp_path / "workbook.py").write_text(SUM, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
     given = f'x_1 = "{first}"\nx_2 = "{second}"\nx_3 = "0, exact"\nx_4 = "0, exact"\n'
-    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n'
-    toml += f'[limits]\ny = "{limit}"\n[limits.rule]\nguard = "U"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    return str(tmp_path)
+    limits = f'[limits]\ny = "{limit}"\n[limits.rule]\nguard = "U"\n'
+    return str(method_folder(tmp_path, SUM, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{given}{limits}"))
 
 
 @pytest.mark.parametrize(
@@ -239,9 +232,8 @@ def test_what_bends_on_its_way_to_a_limit_is_drawn(tmp_path: Path, error: str, i
     """Terms of second order make 1 % of the variance, and more of what lies farther out."""
     code = "from loopsheet import Method, given, let\nclass Power(Method):\n    'A square.'\n"
     code += '    V = given("1", "voltage")\n    P = let(V**2, "power")\n    L = let(2 * V, "twice")\n'
-    toml = f'workbook = "workbook.py"\n[parameters]\nV = "1.000, {error}"\n'
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    (tmp_path / "report.toml").write_text(toml + '[limits]\nP = "<= 1.6"\nL = "<= 2.5"\n', encoding="utf-8")
+    more = f'[parameters]\nV = "1.000, {error}"\n[limits]\nP = "<= 1.6"\nL = "<= 2.5"\n'
+    method_folder(tmp_path, code, more=more)
     square, line = Study(tmp_path).computed.uncertain().conformities
     assert square.probability == pytest.approx(inside, abs=5e-3)
     assert (square.by.draws, square.budget.draws, line.by.draws) == (20_000, 0, 0)
@@ -268,9 +260,8 @@ class Sum(Method):
     ],
 )
 def test_where_a_probability_is_drawn(tmp_path: Path, a: str, limits: str, draws: int) -> None:
-    (tmp_path / "workbook.py").write_text(SUM_AND_SQUARE, encoding="utf-8")
-    toml = f'workbook = "workbook.py"\n[parameters]\na = "{a}"\nb = "0.0, u = 0.35"\n[limits]\n{limits}\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    more = f'[parameters]\na = "{a}"\nb = "0.0, u = 0.35"\n[limits]\n{limits}\n'
+    method_folder(tmp_path, SUM_AND_SQUARE, more=more)
     (found,) = Study(tmp_path).computed.uncertain().conformities
     assert found.by.draws == draws
     assert 0 < found.probability <= 1
@@ -578,13 +569,10 @@ class Spring(Method, rows="loads", headline="give"):
 
 def test_a_limit_of_what_has_no_budget_in_the_workbook_is_told_there(tmp_path: Path) -> None:
     """Of the scatter of a fit only draws know how it is distributed: there are no formulas for it."""
-    (tmp_path / "workbook.py").write_text(SPRING, encoding="utf-8")
     rows = "1,50.0,112.4\n2,100.0,132.1\n3,150.0,151.3\n4,200.0,171.4\n5,250.0,190.7\n"
-    (tmp_path / "measurements.csv").write_text(f"load,m [g],x [mm]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    toml += '[parameters]\ng = "9.8123 m/s^2, u = 0.0002 m/s^2"\n'
-    toml += '[uncertainty]\nm = "+-0.1 g rect"\nx = "u = 0.3 mm"\n[limits]\nline_s = "<= 0.2 mm"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    more = '[parameters]\ng = "9.8123 m/s^2, u = 0.0002 m/s^2"\n'
+    more += '[uncertainty]\nm = "+-0.1 g rect"\nx = "u = 0.3 mm"\n[limits]\nline_s = "<= 0.2 mm"\n'
+    method_folder(tmp_path, SPRING, f"load,m [g],x [mm]\n{rows}", more)
     main(["build", str(tmp_path), "--to", "xlsx"])
     book = openpyxl.load_workbook(tmp_path / "out" / "report.xlsx")["uncertainty"]
     told = [str(row[0].value) for row in book.iter_rows()]

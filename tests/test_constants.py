@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from scipy.constants import physical_constants
-from test_method import folder
 
 import loopsheet
 import loopsheet.report.method.words
@@ -22,7 +22,8 @@ def test_constants_of_nature_have_their_digits(tmp_path: Path) -> None:
         "    R = constant('molar gas constant')\n    G = constant('Newtonian constant of gravitation')\n"
         "    n = let(p * V / (R * T), 'amount')\n    twice = let(2 * G, 'twice')\n"
     )
-    path = folder(tmp_path, code, 'p = "101.325 kPa"\nV = "22.41396954 L"\nT = "0 degC"\n')
+    more = '[parameters]\np = "101.325 kPa"\nV = "22.41396954 L"\nT = "0 degC"\n'
+    path = method_folder(tmp_path, code, more=more)
     made = loopsheet.load(path)
     assert made["n"].value == pytest.approx(1, rel=1e-9)  # of an ideal gas
     assert made["n"].unit == "mol"
@@ -39,9 +40,10 @@ def test_a_constant_of_fewer_digits_explains_what_was_published(tmp_path: Path, 
         "    b = given('K', 'slope')\n    c = given('K', 'another')\n    R = constant('molar gas constant')\n"
         "    E_b = let(b * R, 'energy', 'kJ/mol')\n    E_c = let(c * R, 'another', 'kJ/mol')\n"
     )
-    path = folder(tmp_path, code, 'b = "11823.29 K"\nc = "7512.40 K"\n[published]\nfile = "published.csv"\n')
     rows = (f"text,E_{n},,{float(taken) * size:.3f},J/mol" for n, size in (("b", 11823.29), ("c", 7512.40)))
-    (path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *rows, ""]))
+    more = '[parameters]\nb = "11823.29 K"\nc = "7512.40 K"\n'
+    published = "\n".join(["source,cell,index,value,unit", *rows, ""])
+    path = method_folder(tmp_path, code, more=more, published=published)
     referee = Study(path).refereed.referee
     first, *others = referee.explanations
     assert [(each.kind, each.cell, each.would_print) for each in first.changes] == [("parameter", "R", taken)]
@@ -70,7 +72,8 @@ def test_constants_that_were_adjusted_together_are_correlated(
     code += (
         "    eps = constant('vacuum electric permittivity')\n    c = constant('speed of light in vacuum')\n"
     )
-    path = folder(tmp_path, f"{code}    r = let({formula}, 'radius')\n", stated)
+    code += f"    r = let({formula}, 'radius')\n"
+    path = method_folder(tmp_path, code, more=f"[parameters]\n{stated}")
     assert main(["check", str(path), "--format", "json"]) == 0
     checks = json.loads(capsys.readouterr().out)["checks"]
     told = [each["message"] for each in checks if each["kind"] == "constants"]

@@ -6,6 +6,7 @@ from inspect import unwrap
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from sympy import exp, sqrt
 
 from loopsheet import Method, derivative, fit, given, let, load, mean, measured, pairs, root, total, unknown
@@ -30,13 +31,10 @@ CODE = f"""{HEAD}class Lens(Method, rows="rows"):
     f = let(a * b / s, "focal length", "mm")
     u_f = let(u_a * derivative(f, a), "u of f by a alone", "mm")
 """
-TOML = 'workbook = "workbook.py"\n[parameters]\nu_a = "0.5 mm"\n[measurements]\nfile = "measurements.csv"\n'
 
 
 def write(folder: Path, code: str) -> Path:
-    for name, text in {"workbook.py": code, "measurements.csv": TABLE, "report.toml": TOML}.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    return folder
+    return method_folder(folder, code, TABLE, '[parameters]\nu_a = "0.5 mm"\n')
 
 
 def test_a_derivative_goes_through_what_names_stand_for(tmp_path: Path) -> None:

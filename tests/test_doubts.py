@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from helpers import method_folder
 
 from loopsheet.report.cli import main
 from loopsheet.report.result.uncertain import Budget
@@ -117,10 +118,8 @@ class Tied(Method, rows="readings"):
 
 def test_the_range_of_equal_readings_is_not_certain(tmp_path: Path) -> None:
     """Which of them is the greatest, and which the least, changes with any error: slopes are nothing here."""
-    (tmp_path / "workbook.py").write_text(TIED, encoding="utf-8")
-    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.000\n2,2.000\n3,2.000\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nx = "u = 0.01 mm"\n'
-    (tmp_path / "report.toml").write_text(toml + '[limits]\nwidth = "<= 0.005 mm"\n', encoding="utf-8")
+    more = '[uncertainty]\nx = "u = 0.01 mm"\n[limits]\nwidth = "<= 0.005 mm"\n'
+    method_folder(tmp_path, TIED, "reading,x [mm]\n1,2.000\n2,2.000\n3,2.000\n", more)
     found = Study(tmp_path).computed.uncertain()
     assert not found.budgets[0].is_known
     (conformity,) = found.conformities

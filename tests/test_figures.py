@@ -18,6 +18,7 @@ import grouped
 import numpy as np
 import pytest
 from drawn_files import pdf_of, svg_of
+from helpers import method_folder
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
@@ -376,10 +377,8 @@ class Named(Method, rows="coupons"):
 
 
 def test_rows_with_names_are_named_by_them(tmp_path: Path) -> None:
-    (tmp_path / "workbook.py").write_text(NAMED, encoding="utf-8")
-    (tmp_path / "d.csv").write_text("specimen,x [m],y [m]\nS-17,1.0,1.1\nS-4,2.0,2.3\n", encoding="utf-8")
-    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n')
-    report = Study(tmp_path).computed
+    rows = "specimen,x [m],y [m]\nS-17,1.0,1.1\nS-4,2.0,2.3\n"
+    report = Study(method_folder(tmp_path, NAMED, rows)).computed
     (figure,) = (figures.draw(report, each.drawing) for each in figures.of(report) if not each.fixed)
     assert {"S-17", "S-4"} <= {text.get_text() for text in figure.findobj(Text)}
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from adjusted import adjusted
+from helpers import method_folder
 from sympy import Expr, IndexedBase, Symbol, exp, symbols
-from test_fit import cells, k, n, write
+from test_fit import cells, k, n
 
 import loopsheet
 from loopsheet import Method, fit, measured, unknown
@@ -56,7 +57,7 @@ def pearson(folder: Path) -> Path:
     """A report folder of Pearson's data with York's weights."""
     (x, y), (u_x, u_y) = PEARSON, ([repr(weight**-0.5) for weight in own] for own in YORK)
     rows = "".join(",".join(each) + "\n" for each in zip(x, u_x, y, u_y, strict=True))
-    write(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
+    method_folder(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
     return folder
 
 
@@ -296,6 +297,7 @@ def test_a_wrong_fit_is_told(
 ) -> None:
     head = "from loopsheet import Method, fit, groups, let, measured, unknown\n\n\nclass Wrong(Method):\n"
     named = "".join(f"    {name} = measured('1', '{name}')\n" for name in "xyz")
-    write(tmp_path, f"{head}{named}    a = unknown('a')\n    {body}\n", "x [1],y [1],z [1],s\n1,2,3,A\n")
+    code = f"{head}{named}    a = unknown('a')\n    {body}\n"
+    method_folder(tmp_path, code, "x [1],y [1],z [1],s\n1,2,3,A\n")
     assert main(["check", str(tmp_path)]) == 2
     assert said in capsys.readouterr().err

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 import test_fit
+from helpers import method_folder
 from nist_strd import Strd, digits
 from sympy import Rational
-from test_fit import NONLINEAR, Array, cells, write
+from test_fit import NONLINEAR, Array, cells
 from test_live_second_order import SCRIPTS
 from test_live_uncertain import in_node
 
@@ -84,7 +85,7 @@ ROWS = (
 
 def growth(folder: Path, A: float, r: float, u: str = "'stated'", more: str = "") -> Study:
     t = '[uncertainty]\nt = "u = 0.05"\n' if "t:" in u else '[uncertainty]\nt = "exact"\n'
-    write(folder, (GROWTH + more).format(A=A, r=r, u=u), f"reading,t [s],y [mV]\n{ROWS}", t)
+    method_folder(folder, (GROWTH + more).format(A=A, r=r, u=u), f"reading,t [s],y [mV]\n{ROWS}", t)
     return Study(folder)
 
 
@@ -130,7 +131,7 @@ def test_a_fit_that_rests_on_another_begins_after_it(tmp_path: Path) -> None:
 
 def test_where_nothing_is_least_there_is_no_number(tmp_path: Path) -> None:
     """What grows on and on has no end."""
-    write(
+    method_folder(
         tmp_path,
         GROWTH.format(A=-400, r=0.2, u=None),
         "reading,t [s],y [mV]\n1,1,-1\n2,2,-3\n3,3,-9\n4,4,-27\n",
@@ -175,7 +176,7 @@ def from_near_and_far(place: Path) -> Iterator[Report]:
     for name, start in {"near": (210, 0.06), "far": (100, 1)}.items():
         folder = place / name
         folder.mkdir()
-        write(folder, ENZYME.format(V=start[0], K_M=start[1]), RATES, STATED)
+        method_folder(folder, ENZYME.format(V=start[0], K_M=start[1]), RATES, STATED)
         yield Study(folder).computed
 
 

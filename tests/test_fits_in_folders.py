@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_fit import cells, write
+from helpers import method_folder
+from test_fit import cells
 
 from loopsheet.derivations.equation import Kind
 from loopsheet.report.messages.errors import InputError
@@ -27,11 +28,7 @@ POWER = "    b = unknown('b', start=1.4)\n    f = fit(y, x**b)\n"
 def in_folder(tmp_path: Path, body: str, rows: str) -> Any:
     """What is computed of a method of x and y."""
     head = PLACES + "    x = measured('1', 'x')\n    y = measured('1', 'y')\n"
-    (tmp_path / "workbook.py").write_text(head + body, encoding="utf-8")
-    (tmp_path / "m.csv").write_text(f"reading,x [1],y [1]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    return Study(tmp_path).computed
+    return Study(method_folder(tmp_path, head + body, f"reading,x [1],y [1]\n{rows}")).computed
 
 
 def test_no_row_is_weighed_by_a_negative_uncertainty(tmp_path: Path) -> None:
@@ -77,10 +74,8 @@ def test_a_claim_of_a_fit_is_called_no_definition(tmp_path: Path) -> None:
 
 def test_the_referee_steps_without_a_row_that_is_empty(tmp_path: Path) -> None:
     """A missing datum is none of the size of a SI unit, from which the steps would not settle."""
-    write(tmp_path, RATES, f"S [mmol/L],v [umol/(L min)]\n{RATED}", '[published]\nfile = "p.csv"\n')
-    (tmp_path / "p.csv").write_text(
-        "source,cell,index,value,unit\nbook,K_M,,0.809,mmol/L\n", encoding="utf-8"
-    )
+    published = "source,cell,index,value,unit\nbook,K_M,,0.809,mmol/L\n"
+    method_folder(tmp_path, RATES, f"S [mmol/L],v [umol/(L min)]\n{RATED}", published=published)
     referee = Study(tmp_path).refereed.referee
     assert referee is not None
     assert [(found.verdict, found.low < found.high) for found in referee.values] == [("reachable", True)]
@@ -109,7 +104,7 @@ def test_all_of_a_fit_is_shown_in_the_unit_of_what_it_belongs_to(tmp_path: Path)
     """What is shown like a computed column has that one's unit, in the report and in the cells of charts."""
     from loopsheet.report import stages
 
-    write(tmp_path, RECIPROCALS, f"S [mmol/L],v [nmol/(mL min)]\n{RATED}")
+    method_folder(tmp_path, RECIPROCALS, f"S [mmol/L],v [nmol/(mL min)]\n{RATED}")
     report = Study(tmp_path).computed
     rate, reciprocal = "nmol/(mL min)", "L min/umol"
     units = {
@@ -216,7 +211,7 @@ def test_a_curve_through_all_points_is_as_sure_as_they_are(
 ) -> None:
     """No step makes a sum of squares smaller that is rounding alone, and yet all of it is a step."""
     rows = "theta [degC],R [kohm]\n" + "".join(f"{theta:.2f},{R!r}\n" for theta, R in (first, second))
-    write(
+    method_folder(
         tmp_path, THERMISTOR, rows, '[uncertainty]\nR = "u = 0.1 % of reading"\ntheta = "U = 0.02 K, k = 2"\n'
     )
     study = Study(tmp_path)
@@ -251,9 +246,9 @@ def test_a_standard_uncertainty_is_in_the_unit_of_what_it_belongs_to(tmp_path: P
     body += "    y = measured('mm', 'reading')\n"
     body += f"    a = unknown('zero', 'mm')\n    b = unknown('slope')\n    line = fit(y, a + b * x, u={u})\n"
     rows = "x [mm],y [mm],q [1]\n0,0,1\n1,1.2,1\n2,1.9,1\n3,3.1,1\n"
-    write(tmp_path, PLACES + body, rows)
+    method_folder(tmp_path, PLACES + body, rows)
     with pytest.raises(InputError, match=r"line: u of y is not in its unit, mm, .* u_y = given") as refused:
         _ = Study(tmp_path).computed
     assert "workbook.py:9:5" in str(refused.value)
-    write(tmp_path, PLACES + body.replace(f"u={u}", "u=0.1 * q * x"), rows)
+    method_folder(tmp_path, PLACES + body.replace(f"u={u}", "u=0.1 * q * x"), rows)
     assert np.isfinite(cells(Study(tmp_path).computed.values, "b")[0])

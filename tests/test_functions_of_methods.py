@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 from scipy.optimize import curve_fit
 
 from loopsheet.report.cli import main
@@ -56,13 +57,6 @@ STICKS = {
 X = np.array([0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4])
 
 
-def written(folder: Path, code: str, table: str, more: str = "") -> Path:
-    (folder / "workbook.py").write_text(code, encoding="utf-8")
-    (folder / "d.csv").write_text(table, encoding="utf-8")
-    (folder / "report.toml").write_text(f'workbook = "workbook.py"\n{more}[measurements]\nfile = "d.csv"\n')
-    return folder
-
-
 @pytest.fixture(scope="module")
 def programs(require: Callable[..., str]) -> None:
     """What `check` asks of a machine that has it."""
@@ -76,7 +70,7 @@ def test_every_function_has_its_roots_in_every_engine(
 ) -> None:
     """H. S. Carslaw and J. C. Jaeger, Conduction of Heat in Solids, 1959, table I: x tan x = Bi."""
     more = '[parameters]\nA = "0.8"\n'
-    folder = written(tmp_path, ROOTS, "slab,Bi [1]\n1,0.1\n2,1.0\n3,10\n", more)
+    folder = method_folder(tmp_path, ROOTS, "slab,Bi [1]\n1,0.1\n2,1.0\n3,10\n", more)
     assert main(["check", str(folder)]) == 0, capsys.readouterr()
     values = Study(folder).computed.values
     assert values.value["x"] == pytest.approx([0.3111, 0.8603, 1.4289], abs=5e-5)
@@ -98,7 +92,7 @@ def test_a_model_with_corners_and_decimals_is_proved_and_fitted(
     y = 1.02 * 1.3 * model(X, 0.57) + 0.2 * X**1.5 + rng.normal(0, 0.004, X.size)
     rows = "".join(f"{n},{x:.1f},{own:.4f}\n" for n, (x, own) in enumerate(zip(X, y, strict=True), start=1))
     code = STICK.format(model=text)
-    folder = written(
+    folder = method_folder(
         tmp_path, code, f"row,x [1],y [1]\n{rows}", '[uncertainty]\nx = "exact"\ny = "u = 0.004"\n'
     )
     assert main(["check", str(folder)]) == 0, capsys.readouterr()
@@ -132,7 +126,7 @@ def test_of_what_lies_on_a_corner_no_uncertainty_is_told(
 ) -> None:
     """It was exact to first order: only to one side of where it is; draws tell of both."""
     table = "shift,t [h]\n1,8.25\n2,7.00\n3,8.00\n"
-    folder = written(tmp_path, CORNER, table, '[parameters]\nmost = "8 h, exact"\n')
+    folder = method_folder(tmp_path, CORNER, table, '[parameters]\nmost = "8 h, exact"\n')
     report = Study(folder).computed
     spread = Spread(report.inputs, report.values)
     u = [spread.budget("over", row).u for row in range(3)]
@@ -161,7 +155,7 @@ class Cube(Method, rows="points"):
 def test_of_what_is_of_third_order_alone_no_rounding_is_told(tmp_path: Path) -> None:
     """What second derivatives are but for rounding was u, a millionth of what it is."""
     more = '[parameters]\nR_0 = "10 kohm, exact"\n[uncertainty]\nR = "u = 0.003"\n'
-    folder = written(tmp_path, CUBE, "point,R [kohm]\n1,12.500\n2,10.000\n", more)
+    folder = method_folder(tmp_path, CUBE, "point,R [kohm]\n1,12.500\n2,10.000\n", more)
     report = Study(folder).computed
     spread = Spread(report.inputs, report.values)
     slope = 3 * np.log(1.25) ** 2 * 0.003 / 12.5

@@ -10,6 +10,7 @@ import grouped
 import numpy as np
 import openpyxl
 import pytest
+from helpers import method_folder
 
 import loopsheet
 from loopsheet.report import build, method
@@ -155,11 +156,8 @@ class Both(Method, rows="readings"):
 
 def test_rows_may_be_in_groups_of_two_kinds(tmp_path: Path) -> None:
     """Their running numbers are told apart without a word."""
-    (tmp_path / "workbook.py").write_text(TWO_WAYS)
-    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n')
-    rows = "1,a,u,1.0\n2,a,v,1.2\n3,b,u,2.0\n4,b,v,2.4\n"
-    (tmp_path / "m.csv").write_text(f"reading,specimen,lot,y [mm]\n{rows}")
-    found = loopsheet.load(tmp_path)
+    rows = "reading,specimen,lot,y [mm]\n1,a,u,1.0\n2,a,v,1.2\n3,b,u,2.0\n4,b,v,2.4\n"
+    found = loopsheet.load(method_folder(tmp_path, TWO_WAYS, rows))
     assert found["a"].value.tolist() == pytest.approx([1.1, 2.2])
     assert found["b"].value.tolist() == pytest.approx([1.5, 1.8])
     assert main(["check", str(tmp_path)]) == 0
@@ -386,7 +384,8 @@ def test_words_stand_for_rows_in_the_files(tmp_path: Path, capsys: pytest.Captur
 
 @pytest.mark.parametrize("section", ['[limits]\n"level[X]" = "< 3 mm"', '[expected]\n"level[X]" = "odd"'])
 def test_a_word_of_no_group_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], section: str) -> None:
-    assert main(["check", str(grouped.write(tmp_path, more=section.replace("<", "<=")))]) == 2
+    more = f"{section.replace('<', '<=')}\n"
+    assert main(["check", str(grouped.write(tmp_path, more=more))]) == 2
     told = capsys.readouterr().err
     assert "level has no index 'X'" in told
     assert "1, 2 or 3; or A, B or C" in told
@@ -622,13 +621,8 @@ def test_sums_over_groups_beside_sums_over_the_rows_of_others_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, told: str
 ) -> None:
     """s_w was 0.0082 mm for 0.0100, by 5 readings less 2 specimens, and green."""
-    (tmp_path / "workbook.py").write_text(lines, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text(READINGS, encoding="utf-8")
-    toml = (
-        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n[expected]\n"s[A1]" = "one"\n'
-    )
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert main(["check", str(tmp_path)]) == 0
+    folder = method_folder(tmp_path, lines, READINGS, '[expected]\n"s[A1]" = "one"\n')
+    assert main(["check", str(folder)]) == 0
     said = "warning: s_w rests on sums that leave out some specimens, and on others over readings of these"
     out = capsys.readouterr().out
     assert (said in out, "leave out some" in out) == (bool(told), bool(told))

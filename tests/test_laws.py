@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -177,13 +178,10 @@ def made(tmp_path: Path) -> Make:
     """Compute a sum of four terms, of which this is given."""
 
     def made(*terms: str, draws: str = "", more: str = "") -> Report:
-        (tmp_path / "workbook.py").write_text(SUM, encoding="utf-8")
-        (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
         (tmp_path / "draws.csv").write_text(draws, encoding="utf-8")
         terms = (*terms, *["0, exact"] * (4 - len(terms)))
         said = "".join(f'x_{n} = "{text}"\n' for n, text in enumerate(terms, start=1))
-        text = f'workbook = "workbook.py"\n[parameters]\n{said}[measurements]\nfile = "measurements.csv"\n'
-        (tmp_path / "report.toml").write_text(text + more, encoding="utf-8")
+        method_folder(tmp_path, SUM, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{said}{more}")
         return Study(tmp_path).computed
 
     return made
@@ -274,11 +272,7 @@ def test_a_square_of_what_is_exponential_to_second_order(tmp_path: Path) -> None
     """Of x**2 with mean m the variance is 20 m**4, of which the skewness makes 8."""
     own = SUM.replace("sum(c.symbol for c in x)", "x[0].symbol**2").replace("(r, *x, y)", "(r, x[0], y)")
     own = own.replace("for name in names),", "for name in names[:1]),")
-    (tmp_path / "workbook.py").write_text(own, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
-    text = 'workbook = "workbook.py"\n[parameters]\nx_1 = "3, exponential"\n[measurements]\n'
-    text += 'file = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(text, encoding="utf-8")
+    method_folder(tmp_path, own, "test,r [1]\n1,1\n2,2\n", '[parameters]\nx_1 = "3, exponential"\n')
     report = Study(tmp_path).computed
     assert Spread(report.inputs, report.values).budget("y", 0).u == pytest.approx(
         math.sqrt(20 * 81), rel=1e-9

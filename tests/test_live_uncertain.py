@@ -15,6 +15,7 @@ import gas
 import numpy as np
 import pytest
 import test_order
+from helpers import method_folder
 from test_digits import CAMPAIGNS
 
 from loopsheet.report import stages
@@ -264,14 +265,11 @@ def test_how_readings_scatter_follows_an_edit(told: Told, tmp_path: Path, name: 
         if not stated:
             copytree(PAPER.parent / "gum_h2", folder, ignore=lambda *_: ["out", "published.csv"])
             toml = (folder / "report.toml").read_text(encoding="utf-8").partition("[published]")[0]
+            (folder / "report.toml").write_text(toml, encoding="utf-8")
         else:
-            folder.mkdir()
-            (folder / "workbook.py").write_text(PIPETTE, encoding="utf-8")
             rows = "delivery,m [mg]\n1,998.1\n2,999.4\n3,997.2\n4,998.8\n"
-            (folder / "measurements.csv").write_text(rows, encoding="utf-8")
-            toml = 'workbook = "workbook.py"\n[parameters]\nrho = "997.5(2) kg/m^3"\n[measurements]\n'
-            toml += f'file = "measurements.csv"\n[uncertainty]\nm = "{stated}"\n'
-        (folder / "report.toml").write_text(toml, encoding="utf-8")
+            more = f'[parameters]\nrho = "997.5(2) kg/m^3"\n[uncertainty]\nm = "{stated}"\n'
+            method_folder(folder, PIPETTE, rows, more)
     for column, row, text in edits:
         place = folders[1] / ("measurements.csv" if row else "report.toml")
         lines = place.read_text(encoding="utf-8").splitlines()

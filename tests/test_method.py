@@ -11,6 +11,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from helpers import method_folder
 from sympy import Abs, Max, Min, Sum, Symbol, pi, sin, sqrt
 
 import loopsheet
@@ -106,16 +107,9 @@ class Colebrook(Method, source="C F Colebrook, J. Inst. Civ. Eng. 11 (1939) 133"
 """
 
 
-def folder(path: Path, code: str, parameters: str) -> Path:
-    (path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = f'title = "T"\nworkbook = "workbook.py"\n[parameters]\n{parameters}'
-    (path / "report.toml").write_text(toml, encoding="utf-8")
-    return path
-
-
 def test_a_root_in_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The friction factor of Colebrook's equation by mpmath, and decimals as they were typed."""
-    where = folder(tmp_path, PIPE, 'Re = "1.00e5, u = 1e3"\nrough = "0.0010"\n')
+    where = method_folder(tmp_path, PIPE, more='[parameters]\nRe = "1.00e5, u = 1e3"\nrough = "0.0010"\n')
     report = Study(where).computed
 
     def residual(f: mpmath.mpf) -> mpmath.mpf:
@@ -196,7 +190,7 @@ def test_a_wrong_line_is_told(
     head = "import sympy\nfrom sympy import Symbol\n" + PIPE.partition("    Re")[0]
     head = head.replace("import Method", "import claim, measured, Method")
     code = f'{head}    a = given("m", "length")\n    b = given("s", "time")\n    {line}\n'
-    where = folder(tmp_path, code, 'a = "1.0 m"\nb = "2.0 s"\n')
+    where = method_folder(tmp_path, code, more='[parameters]\na = "1.0 m"\nb = "2.0 s"\n')
     assert main(["check", str(where)]) == 2
     told = capsys.readouterr().err
     assert said in told
@@ -240,14 +234,9 @@ class Steps(Method):
     step = let(second(x) - first(x), "step", "mm")
     m = let(mean(step), "mean step", "mm")
 """
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.0\n", encoding="utf-8")
     with pytest.raises(InputError, match="LS310"):
-        load(tmp_path)
-    (tmp_path / "m.csv").write_text("reading,x [mm]\n1,2.0\n2,3.0\n", encoding="utf-8")
-    assert float(load(tmp_path)["m"]) == 1.0
+        load(method_folder(tmp_path, code, "reading,x [mm]\n1,2.0\n"))
+    assert float(load(method_folder(tmp_path, code, "reading,x [mm]\n1,2.0\n2,3.0\n"))["m"]) == 1.0
 
 
 def test_a_column_of_choices_is_exact(tmp_path: Path) -> None:
@@ -258,11 +247,7 @@ class Doses(Method):
     gain = measured("g", "gain")
     y = let(gain + dose, "both", "g")
 """
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("reading,dose [g],gain [g]\n1,5,0.30\n2,9,0.70\n")
-    report = load(tmp_path)
+    report = load(method_folder(tmp_path, code, "reading,dose [g],gain [g]\n1,5,0.30\n2,9,0.70\n"))
     assert report["dose"].u.tolist() == [0, 0]
     assert report["y"].u == pytest.approx(report["gain"].u)
 
@@ -341,7 +326,7 @@ def test_a_default_is_read_as_what_is_given(
 ) -> None:
     text = "from loopsheet import Method, given, let\nclass One(Method):\n    a = given('kg', 'a')\n"
     text += f"    b = given('m', 'b', default={default!r})\n    c = let(a * b, 'c')\n"
-    assert main(["check", str(folder(tmp_path, text, 'a = "1 kg"\n'))]) == 2
+    assert main(["check", str(method_folder(tmp_path, text, more='[parameters]\na = "1 kg"\n'))]) == 2
     assert f"error[{code}]" in capsys.readouterr().err
 
 
@@ -387,7 +372,8 @@ def test_a_root_over_a_number_that_may_be_zero(tmp_path: Path, require: Callable
         '    V = measured("V", "voltage")\n    c = given("V", "scale")\n    x = unknown()\n'
         '    x = root(x + x**3, V / c, "ratio", low=0, high=3)\n'
     )
-    where = folder(tmp_path, code.replace("let, root", "let, measured, root"), 'c = "2.0 V"\n')
+    code = code.replace("let, root", "let, measured, root")
+    where = method_folder(tmp_path, code, more='[parameters]\nc = "2.0 V"\n')
     with (where / "report.toml").open("a", encoding="utf-8") as file:
         file.write('[measurements]\nfile = "m.csv"\n')
     (where / "m.csv").write_text("reading,V [V]\n1,3.0\n2,5.0\n", encoding="utf-8")
@@ -409,11 +395,7 @@ def test_at_a_corner_nothing_is_told_of_second_order(tmp_path: Path) -> None:
         '    T = measured("s", "time")\n    m = let(mean(Abs(T - mean(T))), "mean deviation")\n'
     )
     assert sheet_of(Deviation)["m"].axis is None
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    (tmp_path / "m.csv").write_text("test,T [s]\n1,1.2\n2,1.5\n3,1.8\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    report = Study(tmp_path).computed
+    report = Study(method_folder(tmp_path, code, "test,T [s]\n1,1.2\n2,1.5\n3,1.8\n")).computed
     budget = Spread(report.inputs, report.values).budget("m", 0)
     drawn = draw(report.inputs, report.values, budget, 20_000)
     assert budget.second == 0
@@ -434,7 +416,8 @@ def test_what_else_is_refused() -> None:
 
 
 def test_a_file_of_two_methods_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    where = folder(tmp_path, PIPE + PIPE.replace("Colebrook(", "Other("), 'Re = "1.00e5"\nrough = "0.0010"\n')
+    both = PIPE + PIPE.replace("Colebrook(", "Other(")
+    where = method_folder(tmp_path, both, more='[parameters]\nRe = "1.00e5"\nrough = "0.0010"\n')
     assert main(["check", str(where)]) == 2
     assert "it declares two methods" in capsys.readouterr().err
 
@@ -542,7 +525,7 @@ def test_what_a_star_brings_along_is_not_meant(tmp_path: Path, line: str, near: 
     head = "from sympy import *\nfrom loopsheet import *\n\nclass Stars(Method):\n    'One.'\n"
     code = f"{head}    T = given('s', 'period')\n    {line}\n"
     with pytest.raises(InputError) as refused:
-        Study(folder(tmp_path, code, 'T = "1.0 s"\n')).report  # noqa: B018
+        Study(method_folder(tmp_path, code, more='[parameters]\nT = "1.0 s"\n')).report  # noqa: B018
     assert (f"did you mean {near}" in str(refused.value)) is bool(near)
     assert ("did you mean" in str(refused.value)) is bool(near)
 
@@ -609,15 +592,8 @@ def test_sums_of_one_result_run_over_the_same_rows(
     rows = [f"{n},{x},{y}" for n, (x, y) in enumerate([(1, 2), (2, 4.1), (-3, 6), (4, 7.9), (5, 10.2)], 1)]
     found = {}
     for name, more in (("failing", ("", "", "")), ("aside", (",left out", ",", ",odd"))):
-        at = tmp_path / name
-        at.mkdir()
-        (at / "workbook.py").write_text(LOGS, encoding="utf-8")
-        (at / "report.toml").write_text(
-            'workbook = "workbook.py"\n[parameters]\nx_0 = "1 m"\n[measurements]\nfile = "rows.csv"\n',
-            encoding="utf-8",
-        )
         table = ["reading,x [m],y [m]" + more[0], *(row + more[2 if row[0] == "3" else 1] for row in rows)]
-        (at / "rows.csv").write_text("\n".join(table), encoding="utf-8")
+        at = method_folder(tmp_path / name, LOGS, "\n".join(table), '[parameters]\nx_0 = "1 m"\n')
         report = Study(at).computed
         cells = {each: report.values.cell(each).value for each in ("slope", "level", "mean_x")}
         spread = Spread(report.inputs, report.values)

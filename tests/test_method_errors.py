@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 
 from loopsheet import Method, let, measured
 from loopsheet.report.column import SheetError
@@ -168,10 +169,8 @@ v = let(b0 + b_0, "of misspelt names")
 def test_all_that_is_wrong_is_told_at_once(tmp_path: Path, name: str) -> None:
     lines, expected = WRONG[name]
     body = "".join(f"    {line}\n" for line in lines.splitlines())
-    (tmp_path / "workbook.py").write_text(HEAD + body, encoding="utf-8")
-    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n[parameters]\n', encoding="utf-8")
     with pytest.raises(InputError) as told:
-        _ = Study(tmp_path).computed
+        _ = Study(method_folder(tmp_path, HEAD + body, more="[parameters]\n")).computed
     found = [(each.at.line, str(each)) for each in told.value.diagnostics]
     assert [line for line, _ in found] == [FIRST + line for line in expected]
     for (_, said), words in zip(found, expected.values(), strict=True):

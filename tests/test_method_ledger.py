@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from sympy import Rational, Sum, Symbol
-from test_method import folder as method_folder
 
 from loopsheet import (
     Method,
@@ -203,11 +203,7 @@ def test_what_is_refused(line: str, said: str, tmp_path: Path, capsys: pytest.Ca
         "class Own(Method):\n    '''Own.'''\n\n    c = given('1', 'a number')\n    y = let(2 * c, 'twice')\n"
         f"    {line}\n"
     )
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[parameters]\nc = "1"\n', encoding="utf-8"
-    )
-    assert main(["check", str(tmp_path)]) == 2
+    assert main(["check", str(method_folder(tmp_path, code, more='[parameters]\nc = "1"\n'))]) == 2
     told = capsys.readouterr().err
     assert said in told
     assert "workbook.py:12" in told
@@ -251,12 +247,8 @@ def gauge_of(
     bounds: str = "",
 ) -> str:
     code = GAUGE.format(positive=positive, low=low, bounds=bounds)
-    (folder / "workbook.py").write_text(code, encoding="utf-8")
     rows = "".join(f"{n},{each}\n" for n, each in enumerate(x.split(), start=1))
-    (folder / "m.csv").write_text(f"load,x [m]\n{rows}", encoding="utf-8")
-    toml = f'workbook = "workbook.py"\n[parameters]\ny = "{y}"\n[measurements]\nfile = "m.csv"\n'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
-    return str(folder)
+    return str(method_folder(folder, code, f"load,x [m]\n{rows}", f'[parameters]\ny = "{y}"\n'))
 
 
 def test_what_a_word_says_is_positive_is_so_of_the_data(
@@ -266,7 +258,7 @@ def test_what_a_word_says_is_positive_is_so_of_the_data(
     assert main(["show", "D", gauge_of(tmp_path)]) == 2
     told = capsys.readouterr().err
     assert "x is out of range: '-3.00'" in told
-    assert "m.csv:3:3" in told
+    assert "measurements.csv:3:3" in told
     assert "with positive=False in its Quantity the method lets any number in" in told
     folder = gauge_of(tmp_path, positive=", positive=False")
     assert [Study(Path(folder)).computed.values.scalar(name) for name in ("D", "e")] == [3.0, 3.0]
@@ -308,7 +300,8 @@ def test_a_word_keeps_its_data_within_its_ends_in_any_unit(
         "class Own(Method, ledger=Ledger((), vocabulary=W)):\n    'Own.'\n\n    y = given(W['y'])\n"
         "    z = let(2 * y, 'twice')\n"
     )
-    assert main(["show", "z", str(method_folder(tmp_path, method, f'y = "{y}"\n'))]) == code
+    folder = method_folder(tmp_path, method, more=f'[parameters]\ny = "{y}"\n')
+    assert main(["show", "z", str(folder)]) == code
 
 
 def test_the_ends_that_a_word_has_hold_of_the_data(

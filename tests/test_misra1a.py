@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 from loopsheet.report import stages
 from loopsheet.report.cli import main
@@ -66,14 +67,8 @@ PUBLISHED = "source,cell,index,value,unit\nNIST,b1,,238.94212918,1\nNIST,b2,,5.5
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "workbook.py").write_text(SOURCE)
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[measurements]\nfile = "data.csv"\n[published]\nfile = "published.csv"\n'
-    )
     rows = "".join(f"{number},{x:.1f},{y:.2f}\n" for number, (x, y) in enumerate(DATA, start=1))
-    (tmp_path / "data.csv").write_text("test,x [1],y [1]\n" + rows)
-    (tmp_path / "published.csv").write_text(PUBLISHED)
-    return tmp_path
+    return method_folder(tmp_path, SOURCE, f"test,x [1],y [1]\n{rows}", published=PUBLISHED)
 
 
 def test_the_certified_values_come_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -86,7 +81,7 @@ def test_the_certified_values_come_out(folder: Path, capsys: pytest.CaptureFixtu
 
 def test_the_referee_ends_and_names_the_x_that_was_changed(folder: Path) -> None:
     """Every input is free within its last digit, and moves the root, which no step of a search counts."""
-    data = folder / "data.csv"
+    data = folder / "measurements.csv"
     data.write_text(data.read_text().replace("760.0", "790.0"))
     (folder / "published.csv").write_text(PUBLISHED.replace("8.94212918", "8.9").replace("15643181", "02"))
     report = stages.refereed(Study(folder).computed)
@@ -114,11 +109,10 @@ WORKBOOK = Workbook(
 """
 
 
-def test_a_search_that_counts_no_roots_claims_nothing(folder: Path) -> None:
+def test_a_search_that_counts_no_roots_claims_nothing(tmp_path: Path) -> None:
     """(u - 1)(u - 2)(u - 3) = x has one root at .4, and three wherever the largest prints as published."""
-    (folder / "workbook.py").write_text(FOLD)
-    (folder / "data.csv").write_text("test,x [1]\n1,0.4\n2,0.4\n")
-    (folder / "published.csv").write_text("source,cell,index,value,unit\nA,u,1,3.150,1\n")
+    published = "source,cell,index,value,unit\nA,u,1,3.150,1\n"
+    folder = method_folder(tmp_path, FOLD, "test,x [1]\n1,0.4\n2,0.4\n", published=published)
     report = stages.refereed(Study(folder).computed)
     problem = Problem.of(
         Campaign(report.sheet, report.inputs, report.values, report.values.value), report.inputs.published

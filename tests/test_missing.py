@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from helpers import method_folder
 from test_left_out import campaign, refused
 
 import loopsheet
@@ -44,12 +45,7 @@ TABLE = "a [mm],b [mm]\n1.00,2.00\n1.10,\n1.30,2.20\n"
 
 
 def readings(folder: Path, table: str = TABLE, more: str = "", code: str = METHOD) -> Path:
-    folder.mkdir()
-    (folder / "workbook.py").write_text(code, encoding="utf-8")
-    (folder / "measurements.csv").write_text(table, encoding="utf-8")
-    toml = f'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n{more}'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
-    return folder
+    return method_folder(folder, code, table, more)
 
 
 def test_what_needs_it_has_no_value_and_the_rest_goes_on(tmp_path: Path) -> None:
@@ -126,7 +122,7 @@ def test_a_fit_and_scatter_take_what_there_is(tmp_path: Path) -> None:
         ("test,a [mm],b [mm]\n1,1.00,2.0\n2,1.10,2.1\n3,,\n", "", ["LS403 4:3 the row is empty"]),
         ("a [mm],u(a) [mm],b [mm]\n1.00,0.1,2\n,0.1,2\n1.1,0.1,2\n", "", ["LS403 3:1 a is empty"]),
         ("a [mm],u(a) [mm],b [mm]\n1.00,0.1,2\n1.2,,2\n1.1,0.1,2\n", "", ["LS403 3:5 u(a) is empty"]),
-        (TABLE, '[uncertainty]\npaired = ["a", "b"]\n', ["LS434 5:10"]),
+        (TABLE, '[uncertainty]\npaired = ["a", "b"]\n', ["LS434 3:10"]),
     ],
 )  # fmt: skip
 def test_refused(tmp_path: Path, table: str, more: str, said: list[str]) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 from loopsheet.report.cli import main
 from loopsheet.report.document.material import Material
@@ -41,12 +42,9 @@ def of_a_sum(
     folder: Path, *stated: str, correlation: str = "", most: int = 200_000
 ) -> tuple[Distributed, float]:
     """Four terms of estimate 0, of which this is stated; and the expanded uncertainty by propagation."""
-    (folder / "workbook.py").write_text(SUM, encoding="utf-8")
-    (folder / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
     given = "".join(f'x_{n} = "0.0, {text}"\n' for n, text in enumerate(stated, start=1))
     more = f"[uncertainty.correlation]\n{correlation}\n" if correlation else ""
-    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n{more}'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    method_folder(folder, SUM, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{given}{more}")
     report = Study(folder).computed
     budget = Spread(report.inputs, report.values).budget("y", 0)
     return draw(report.inputs, report.values, budget, most), budget.expanded
@@ -229,9 +227,7 @@ class Roots(Method, source="own", headline="y z"):
 def test_a_draw_without_a_root_has_no_value(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], a: str, name: str, lost: float
 ) -> None:
-    (tmp_path / "workbook.py").write_text(ROOTS, encoding="utf-8")
-    toml = f'workbook = "workbook.py"\n[parameters]\na = "{a}"\n[limits]\n{name} = ">= 0.0001"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    method_folder(tmp_path, ROOTS, more=f'[parameters]\na = "{a}"\n[limits]\n{name} = ">= 0.0001"\n')
     report = Study(tmp_path).computed
     found = draw(report.inputs, report.values, Spread(report.inputs, report.values).budget(name, 0), 100_000)
     assert found.lost / 100_000 == pytest.approx(lost, rel=0.1)
@@ -265,11 +261,8 @@ def test_at_a_bound_there_is_no_second_order(tmp_path: Path) -> None:
 def test_where_only_second_order_counts_no_table_of_sources_is_empty(tmp_path: Path) -> None:
     """A product of two errors around nearly zero: no source of first order is seen beside their product."""
     product = SUM.replace("sum(c.symbol for c in x)", "x[0].symbol * x[1].symbol")
-    (tmp_path / "workbook.py").write_text(product, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
     given = "".join(f'x_{n} = "0.001, u = 1"\n' for n in range(1, 5))
-    toml = f'workbook = "workbook.py"\n[parameters]\n{given}[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    method_folder(tmp_path, product, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{given}")
     report = Study(tmp_path).computed
     assert Material(report).budgets[0].contributions
     article = latex.render(report, [])
@@ -301,12 +294,8 @@ def test_a_mean_of_readings_that_would_be_left_out_is_no_curve(tmp_path: Path) -
         "    '''A length.'''\n\n    x = measured('mm', 'reading', positive=True)\n"
         "    m = let(mean(x), 'mean', 'mm')\n"
     )
-    (tmp_path / "workbook.py").write_text(method, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text("reading,x [mm]\n1,2.0\n2,9.0\n3,25.0\n", encoding="utf-8")
-    toml = (
-        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n[uncertainty]\nx = "scatter"\n'
-    )
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    rows = "reading,x [mm]\n1,2.0\n2,9.0\n3,25.0\n"
+    method_folder(tmp_path, method, rows, '[uncertainty]\nx = "scatter"\n')
     report = Study(tmp_path).computed
     budget = Spread(report.inputs, report.values).budget("m", 0)
     assert budget.unlooked == "2 u from what was given its sums run over other rows"

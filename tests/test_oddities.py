@@ -13,6 +13,7 @@ import numpy as np
 import openpyxl
 import pytest
 from campaign_sizes import Sizes
+from helpers import method_folder
 from slipped_campaigns import PAPER, Slip, Texts, campaign, slips, write
 
 from loopsheet.report import stages
@@ -547,12 +548,8 @@ WORKBOOK = Workbook(
 def test_a_test_that_is_exact_is_named_where_tests_are_weighed(
     tmp_path: Path, first: str, named: bool
 ) -> None:
-    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
-    (tmp_path / "d.csv").write_text(f"test,d [nm],u(d) [nm]\n3,215,{first}\n5,204,2\n", encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n', encoding="utf-8"
-    )
-    report = Study(tmp_path).computed
+    rows = f"test,d [nm],u(d) [nm]\n3,215,{first}\n5,204,2\n"
+    report = Study(method_folder(tmp_path, WEIGHED, rows)).computed
     said = "; ".join(check.message for check in report.oddities)
     assert ("test 3 has d without uncertainty, so that no other test would count beside it" in said) == named
     assert "test 5 has" not in said

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 import loopsheet
 from loopsheet.report.cli import main
@@ -42,14 +43,8 @@ X, Y = (1, 2, 3, 4, 10, 12, 18), (9, 15, 19, 20, 45, 55, 78)
 
 def folder(path: Path, code: str = SEN) -> Path:
     rows = "".join(f"{n},{x},{y}\n" for n, (x, y) in enumerate(zip(X, Y, strict=True), start=1))
-    (path / "workbook.py").write_text(code, encoding="utf-8")
-    (path / "measurements.csv").write_text(f"reading,x [s],y [degC]\n{rows}", encoding="utf-8")
-    (path / "report.toml").write_text(
-        'title = "Sen"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-        '[uncertainty]\nx = "exact"\ny = "u = 0.5 delta_degC"\n',
-        encoding="utf-8",
-    )
-    return path
+    more = '[uncertainty]\nx = "exact"\ny = "u = 0.5 delta_degC"\n'
+    return method_folder(path, code, f"reading,x [s],y [degC]\n{rows}", more)
 
 
 def test_every_pair_has_a_value(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 
 from loopsheet.derivations.proved import ProofStatus
 from loopsheet.report.cli import main
@@ -24,12 +25,8 @@ RISING, FALLING = ((0.1, 0.31, 0.49, 0.7), (0.9, 0.69, 0.51, 0.3))
 
 def folder(place: Path, lines: str, y: tuple[float, ...]) -> Path:
     rows = (f"{n},{n}.0,{value}" for n, value in enumerate(y, 1))
-    (place / "measurements.csv").write_text("\n".join(("reading,x [m],y [V]", *rows, "")))
-    (place / "workbook.py").write_text(HEAD + "".join(f"    {line}\n" for line in lines.split("; ")))
-    (place / "report.toml").write_text(
-        'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    )
-    return place
+    code = HEAD + "".join(f"    {line}\n" for line in lines.split("; "))
+    return method_folder(place, code, "\n".join(("reading,x [m],y [V]", *rows, "")))
 
 
 LINE = "a = unknown('a', 'V'); b = unknown('b', 'mV/m'{}); f = fit(y, a + b * x); "

@@ -5,6 +5,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 
 import loopsheet.report.method.words
 from loopsheet import Method, drawing, let, mean, measured, plot, trace
@@ -146,12 +147,8 @@ class Lengths(Method, source="own", rows="readings", headline="r"):
 
 
 def lengths(folder: Path, code: str = LENGTHS) -> Study:
-    (folder / "workbook.py").write_text(code, encoding="utf-8")
     rows = "reading,x [mm],V [mV],T [degC]\n1,12.0,13.00,12.0\n2,25.0,26.05,25.0\n3,45.0,44.11,45.0\n"
-    (folder / "measurements.csv").write_text(rows, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
-    return Study(folder)
+    return Study(method_folder(folder, code, rows))
 
 
 def test_what_a_workbook_draws_is_in_the_units_of_its_axes(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 import loopsheet
 from loopsheet.report.column import SheetError
@@ -39,14 +40,8 @@ READINGS = [("A", 1.0, 2.0), ("A", 2.0, 4.1), ("B", 1.5, 6.1), ("B", 2.5, 10.2)]
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "workbook.py").write_text(METHOD, encoding="utf-8")
     rows = "".join(f"{n},{word},{x},{F}\n" for n, (word, x, F) in enumerate(READINGS, start=1))
-    (tmp_path / "readings.csv").write_text(f"reading,spring,x [mm],F [N]\n{rows}", encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'title = "Springs"\nworkbook = "workbook.py"\n[measurements]\nfile = "readings.csv"\n',
-        encoding="utf-8",
-    )
-    return tmp_path
+    return method_folder(tmp_path, METHOD, f"reading,spring,x [mm],F [N]\n{rows}")
 
 
 def test_it_is_what_numpy_makes(folder: Path) -> None:
@@ -89,11 +84,7 @@ class Beam(Method):
     d_max = let(max(w), "largest deflection", "mm")
     d_mean = let(mean(w), "mean deflection", "mm")
 """
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[parameters]\nF = "12.0 N"\nL = "1.500 m"\nEI = "210 N*m^2"\n',
-        encoding="utf-8",
-    )
+    method_folder(tmp_path, code, more='[parameters]\nF = "12.0 N"\nL = "1.500 m"\nEI = "210 N*m^2"\n')
     report, x = loopsheet.load(tmp_path), np.linspace(0, 1.5, 21)
     w = 12e3 * x**2 * (4.5 - x) / (6 * 210)
     assert report["t"].value == pytest.approx([0, 5, 10, 15, 20, 25], abs=1e-12)

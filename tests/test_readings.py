@@ -10,6 +10,7 @@ from statistics import correlation, stdev
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.folders import PAPER
@@ -184,11 +185,8 @@ def test_what_readings_come_to_may_scatter_less_than_their_digits_leave(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: str, odd: bool
 ) -> None:
     """Each of them moves, and the difference stands still: its u is 0, and nobody has seen a microgram."""
-    (tmp_path / "workbook.py").write_text(WEIGHED, encoding="utf-8")
-    (tmp_path / "m.csv").write_text(f"A [mg],B [mg]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[parameters]\nm_R = "100.000 mg, u = 0.015 mg"\n'
-    toml += '[measurements]\nfile = "m.csv"\n[uncertainty]\npaired = ["A", "B"]\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    more = '[parameters]\nm_R = "100.000 mg, u = 0.015 mg"\n[uncertainty]\npaired = ["A", "B"]\n'
+    method_folder(tmp_path, WEIGHED, f"A [mg],B [mg]\n{rows}", more)
     left = 1e-9 * math.sqrt(2 / 3 / 12)  # a microgram in both, over three rows
     found = Study(tmp_path).computed.uncertain().unresolved
     assert found == ({("dI", 0): pytest.approx(left, rel=1e-9)} if odd else {})
@@ -262,13 +260,9 @@ class Pendulum(Method, rows="swings"):
 @pytest.mark.parametrize("off", [1.0, 1.5])
 def test_a_published_scatter_may_be_that_of_digits_that_are_not_printed(tmp_path: Path, off: float) -> None:
     """Whoever had all digits has another standard deviation than two decimals have, and not any other."""
-    (tmp_path / "workbook.py").write_text(PERIODS)
-    toml = ['workbook = "workbook.py"', "[parameters]", 'L = "0.8403 m, u = 0.5 mm"', "[measurements]"]
-    toml += ['file = "m.csv"', "[published]", 'file = "published.csv"', "[uncertainty]", 'T = "scatter"']
-    (tmp_path / "report.toml").write_text("\n".join(toml))
+    more = '[parameters]\nL = "0.8403 m, u = 0.5 mm"\n[uncertainty]\nT = "scatter"\n'
     hidden = np.array([1.85357, 1.81807, 1.83837, 1.85647, 1.81823])
     rows = "".join(f"{n},{each:.2f}\n" for n, each in enumerate(hidden, start=1))
-    (tmp_path / "m.csv").write_text(f"swing,T [s]\n{rows}")
     u, g = hidden.std(ddof=1) / math.sqrt(5), 4 * np.pi**2 * 0.8403 / hidden.mean() ** 2
     u_g = g * math.hypot(0.5e-3 / 0.8403, 2 * u / hidden.mean())
     said = [
@@ -276,7 +270,8 @@ def test_a_published_scatter_may_be_that_of_digits_that_are_not_printed(tmp_path
         f"T,u(g),,{u_g:.3f},m/s^2",
         f'T,"u(g, T)",,{2 * g * u / 1.838:.3f},m/s^2',
     ]
-    (tmp_path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *said, ""]))
+    published = "\n".join(["source,cell,index,value,unit", *said, ""])
+    method_folder(tmp_path, PERIODS, f"swing,T [s]\n{rows}", more, published)
     found = Study(tmp_path).refereed.comparisons_u
     assert [each.verdict for each in found] == ["differs"] * 3
     assert [each.word for each in found] == ["reachable" if off == 1 else "differs", "reachable", "reachable"]

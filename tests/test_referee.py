@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from hypothesis import given
 from hypothesis import strategies as st
 from small_report import found, judged, pure
@@ -398,13 +399,10 @@ def test_an_error_of_arithmetic_is_none_of_measurement(
     tmp_path: Path, published: str, word: str, failed: int, summary: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """C is known to 0.35 % alone, and whoever multiplies what is printed gets 104.22 all the same."""
-    toml = 'title = "O"\nworkbook = "workbook.py"\n[parameters]\n'
-    toml += 'C = "0.1003000 mm^2/s^2, U = 0.35 %, k = 2"\n'
-    (tmp_path / "report.toml").write_text(f'{toml}t = "1039.07 s"\n[published]\nfile = "published.csv"\n')
-    (tmp_path / "workbook.py").write_text(OILS)
+    more = '[parameters]\nC = "0.1003000 mm^2/s^2, U = 0.35 %, k = 2"\nt = "1039.07 s"\n'
     rows = f"value,unit,expect,recomputed,reason,cell,index,source\n{published.partition(',')[0]},mm^2/s,"
     rows += f"{published.partition(',')[2]},{'104.40 -> 104.22,measured apart' if 'd' in published else ','},"
-    (tmp_path / "published.csv").write_text(f"{rows}nu,,Report 7\n")
+    method_folder(tmp_path, OILS, more=more, published=f"{rows}nu,,Report 7\n")
     report = refereed(Study(tmp_path).computed)
     (comparison,) = report.comparisons
     assert comparison.word == word
@@ -564,13 +562,9 @@ class Energy(Method, rows="runs"):
 )
 def test_a_constant_of_nature_is_never_suspected(tmp_path: Path, published: str, perhaps: str) -> None:
     """By R = 9.0 or 8.65 all would come out; it is exact, and nobody typed it."""
-    (tmp_path / "workbook.py").write_text(ENERGY)
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "runs.csv"\n'
-    toml += '[published]\nfile = "published.csv"\n'
-    (tmp_path / "report.toml").write_text(toml)
-    (tmp_path / "runs.csv").write_text("run,T [K]\n1,300.32\n2,721.65\n")
     rows = "".join(f"{line},kJ/mol\n" for line in f"T,{published}".splitlines())
-    (tmp_path / "published.csv").write_text(f"source,cell,index,value,unit\n{rows}")
+    said = f"source,cell,index,value,unit\n{rows}"
+    method_folder(tmp_path, ENERGY, "run,T [K]\n1,300.32\n2,721.65\n", published=said)
     report = refereed(Study(tmp_path).computed)
     found = lines(report.referee, lambda _: "")
     told = [line for line in found if "perhaps" in line]
@@ -605,12 +599,9 @@ def test_what_rests_on_nothing_that_may_move_is_what_it_is(
     tmp_path: Path, published: str, right: bool
 ) -> None:
     """Each row by itself: no rounding of the first one is that of the others."""
-    (tmp_path / "workbook.py").write_text(EXACT_ROWS)
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "lines.csv"\n'
-    (tmp_path / "report.toml").write_text(toml + '[published]\nfile = "published.csv"\n')
-    (tmp_path / "lines.csv").write_text("line,series,j [1]\n1,A,3\n2,A,4\n3,B,5\n")
     rows = "".join(f"{line},1\n" for line in f"T,{published}".splitlines())
-    (tmp_path / "published.csv").write_text(f"source,cell,index,value,unit\n{rows}")
+    said = f"source,cell,index,value,unit\n{rows}"
+    method_folder(tmp_path, EXACT_ROWS, "line,series,j [1]\n1,A,3\n2,A,4\n3,B,5\n", published=said)
     found = refereed(Study(tmp_path).computed)
     assert found.referee is not None
     assert {each.refereed.verdict for each in found.comparisons if each.refereed} == (

@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import mean, stdev
 
 import pytest
+from helpers import method_folder
 from small_report import found, pure
 from sympy import Sum, Symbol, sin, sqrt
 
@@ -471,13 +472,10 @@ VISCOSITIES = ("1.0312", "1.0291", "1.0353", "1.0304", "1.0281", "1.0507")
 
 def test_a_test_that_all_averages_leave_out_is_one_change(tmp_path: Path) -> None:
     """Not a misprint of each of them; the search over one average alone finds nothing."""
-    (tmp_path / "workbook.py").write_text(DROPS)
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[published]\nfile = "published.csv"\n'
-    (tmp_path / "report.toml").write_text(toml)
-    (tmp_path / "m.csv").write_text("\n".join(["eta [Pa*s]", *VISCOSITIES, ""]))
     without = [float(each) for each in VISCOSITIES[:-1]]
     rows = (f"text,m,,{mean(without):.5f},Pa*s", f"text,s,,{stdev(without):.5f},Pa*s")
-    (tmp_path / "published.csv").write_text("\n".join(["source,cell,index,value,unit", *rows, ""]))
+    published = "\n".join(["source,cell,index,value,unit", *rows, ""])
+    method_folder(tmp_path, DROPS, "\n".join(["eta [Pa*s]", *VISCOSITIES, ""]), published=published)
     of = Study(tmp_path).refereed.referee
     would = "without drop 6"
     assert changes(of)[0] == [("rows", "m", (), would), ("rows", "s", (), would)]

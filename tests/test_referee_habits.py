@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import method_folder
 
 from loopsheet.report.result.findings import checks
 from loopsheet.report.result.verdict_words import claimed
@@ -53,14 +54,7 @@ class Line(Method, source="own", rows="runs"):
 
 def judged(folder: Path, book: str, published: str, more: str, runs: str = RUNS) -> tuple[list[str], ...]:
     """What the referee holds for possible of a publication: the words of each explanation."""
-    (folder / "workbook.py").write_text(book, encoding="utf-8")
-    (folder / "measurements.csv").write_text(runs, encoding="utf-8")
-    (folder / "published.csv").write_text(f"source,cell,index,value,unit\n{published}", encoding="utf-8")
-    (folder / "report.toml").write_text(
-        f'workbook = "workbook.py"\n{more}[measurements]\nfile = "measurements.csv"\n'
-        '[published]\nfile = "published.csv"\n',
-        encoding="utf-8",
-    )
+    method_folder(folder, book, runs, more, f"source,cell,index,value,unit\n{published}")
     referee = Study(folder).refereed.referee
     found = referee.explanations if referee.asked_why else referee.slips
     return tuple([claimed(change) for change in each.changes] for each in found)

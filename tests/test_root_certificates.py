@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import openpyxl
 import pytest
+from helpers import method_folder
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 from sympy import Abs, Expr, Integer, Max, Mul, Piecewise, Rational, Symbol, cos, exp, log, sin, sqrt, sympify
@@ -382,7 +383,7 @@ def test_a_temperature_in_a_workbook_is_as_issued_to_its_last_digit(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """273.16 - 273.15 is not 0.01 in doubles, and 0.01 is what stands in the cell of the input."""
-    (tmp_path / "workbook.py").write_text(
+    code = (
         "from loopsheet import Method, given, let, measured, root, unknown\n\n\n"
         'class Deg(Method, source="own", rows="points"):\n'
         '    """A root of each row."""\n\n'
@@ -391,12 +392,10 @@ def test_a_temperature_in_a_workbook_is_as_issued_to_its_last_digit(
         '    d = let(t - zero, "above it", "K")\n'
         '    c = given("1/K", "coefficient")\n'
         "    x = unknown()\n"
-        '    x = root(x + c * d * x**3 + x**5, 2 + c * d, "some number", low=-10, high=40)\n',
-        encoding="utf-8",
+        '    x = root(x + c * d * x**3 + x**5, 2 + c * d, "some number", low=-10, high=40)\n'
     )
-    report = 'workbook = "workbook.py"\n[parameters]\nc = "0.0010 1/K"\n[measurements]\nfile = "t.csv"\n'
-    (tmp_path / "report.toml").write_text(report, encoding="utf-8")
-    (tmp_path / "t.csv").write_text("point,t [degC]\n1,0.010\n2,29.765\n3,-40.3\n", encoding="utf-8")
+    rows = "point,t [degC]\n1,0.010\n2,29.765\n3,-40.3\n"
+    method_folder(tmp_path, code, rows, '[parameters]\nc = "0.0010 1/K"\n')
     assert main(["check", str(tmp_path)]) == 0
     assert re.search(r"engine +xlsx +11 cells", capsys.readouterr().out)
     assert main(["build", str(tmp_path), "--to", "xlsx"]) == 0

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import mpmath
 import pytest
+from helpers import method_folder
 
 import loopsheet
 from loopsheet.report.messages.errors import InputError
@@ -25,10 +26,8 @@ def test_a_root_at_an_end_is_none(tmp_path: Path, equation: str, low: str, code:
     x = root({equation}, "x", low={low}, high=4)
 """
     head = "from loopsheet import Method, given, root, unknown\nclass R(Method):\n    'A root.'\n"
-    (tmp_path / "workbook.py").write_text(head + body, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[parameters]\na = "1.0"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    cell = Study(tmp_path).computed.values.cell("x")
+    folder = method_folder(tmp_path, head + body, more='[parameters]\na = "1.0"\n')
+    cell = Study(folder).computed.values.cell("x")
     assert (cell.value, cell.status.code) == (None, code)
     assert says in cell.why
 
@@ -37,16 +36,14 @@ def test_a_root_at_an_end_is_none(tmp_path: Path, equation: str, low: str, code:
 def test_a_number_beside_a_formula_has_the_unit_of_the_root(tmp_path: Path, unit: str, size: float) -> None:
     """One end is a number in the unit that is declared, the other a formula, which is in SI."""
     of = "1" if unit == "%" else "s"
-    (tmp_path / "workbook.py").write_text(
+    code = (
         "from loopsheet import Method, given, root, unknown\nclass R(Method):\n    'A root.'\n"
         f'    a = given("{of}", "scale")\n'
-        f'    x = unknown()\n    x = root((x * a) ** 2, 0.04, "x", "{unit}", low=2, high=1 / a)\n',
-        encoding="utf-8",
+        f'    x = unknown()\n    x = root((x * a) ** 2, 0.04, "x", "{unit}", low=2, high=1 / a)\n'
     )
     written = "2" if unit == "%" else "2 s"
-    toml = f'workbook = "workbook.py"\n[parameters]\na = "{written}"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    cell = Study(tmp_path).computed.values.cell("x")
+    folder = method_folder(tmp_path, code, more=f'[parameters]\na = "{written}"\n')
+    cell = Study(folder).computed.values.cell("x")
     if size == 1:  # 2/s is above 0.5/s
         assert cell.value is None
         assert "is not above" in cell.why
@@ -56,7 +53,7 @@ def test_a_number_beside_a_formula_has_the_unit_of_the_root(tmp_path: Path, unit
 
 def test_the_ends_of_a_root_have_its_unit(tmp_path: Path) -> None:
     """Dispersion of water waves; numbers are in the unit that the root is declared in."""
-    (tmp_path / "workbook.py").write_text(
+    code = (
         "from sympy import pi, tanh\n"
         "from loopsheet import Method, given, root, unknown\n"
         "class Waves(Method):\n"
@@ -66,25 +63,21 @@ def test_the_ends_of_a_root_have_its_unit(tmp_path: Path) -> None:
         "    g = given('m/s^2', 'free fall', default='9.81 m/s^2')\n"
         "    q = unknown()\n"
         "    w = (2 * pi / T) ** 2\n"
-        "    q = root(g * q * tanh(q * h), w, 'wave number', 'cm^-1', low=1e-5, high=1)\n",
-        encoding="utf-8",
+        "    q = root(g * q * tanh(q * h), w, 'wave number', 'cm^-1', low=1e-5, high=1)\n"
     )
-    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n', encoding="utf-8")
     wanted = mpmath.findroot(lambda q: 9.81 * q * mpmath.tanh(10 * q) - (mpmath.pi / 4) ** 2, 0.09)
-    found = loopsheet.load(tmp_path)["q"]
+    found = loopsheet.load(method_folder(tmp_path, code))["q"]
     assert found.unit == "cm^-1"
     assert float(found.value) == pytest.approx(float(wanted) / 100, rel=1e-14)
 
 
 def test_a_number_that_would_take_the_name_of_something_else_is_told(tmp_path: Path) -> None:
-    (tmp_path / "workbook.py").write_text(
+    code = (
         "from loopsheet import Method, given, let, root, unknown\nclass R(Method):\n    'A root.'\n"
         '    a = given("s", "scale", default="2 s")\n'
         '    x_low = let(a / 2, "half of it", "s")\n'
-        '    x = unknown()\n    x = root(x**2, a**2, "x", "s", low=1, high=5 * a)\n',
-        encoding="utf-8",
+        '    x = unknown()\n    x = root(x**2, a**2, "x", "s", low=1, high=5 * a)\n'
     )
-    (tmp_path / "report.toml").write_text('workbook = "workbook.py"\n', encoding="utf-8")
     with pytest.raises(InputError) as told:
-        assert Study(tmp_path).computed
+        assert Study(method_folder(tmp_path, code)).computed
     assert "x_low is declared twice: of the ends, the number 1 is a parameter of that name" in str(told.value)

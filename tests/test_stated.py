@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -339,12 +340,10 @@ def correlated(folder: Path, names: str, error: str, **pairs: str) -> Inputs:
     """Read a folder with some numbers, each with that error, and coefficients of pairs: ``ab="0.9"``."""
     lines = "".join(f'    {name} = given("1", "{name}")\n' for name in names)
     code = f"from loopsheet import Method, given, let\nclass Several(Method):\n{lines}"
-    toml = 'workbook = "workbook.py"\n[parameters]\n' + "".join(f'{n} = "1.0{error}"\n' for n in names)
-    toml += "[uncertainty.correlation]\n"
-    toml += "".join(f'"{one}, {other}" = "{r}"\n' for (one, other), r in pairs.items())
-    (folder / "workbook.py").write_text(f'{code}    y = let(a, "y")\n', encoding="utf-8")
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
-    return load(folder, find_workbook)
+    more = "[parameters]\n" + "".join(f'{n} = "1.0{error}"\n' for n in names)
+    more += "[uncertainty.correlation]\n"
+    more += "".join(f'"{one}, {other}" = "{r}"\n' for (one, other), r in pairs.items())
+    return load(method_folder(folder, f'{code}    y = let(a, "y")\n', more=more), find_workbook)
 
 
 def test_of_correlations_those_that_clash_are_named(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 
 from loopsheet.report.cli import main
 from loopsheet.report.result.statements import of_column, statements
@@ -68,11 +69,8 @@ class Depths(Method):
 
 def test_of_many_rows_the_least_and_the_largest(tmp_path: Path) -> None:
     rows = "".join(f"{n},{20 + n}.0({n})\n" for n in range(1, 14))
-    (tmp_path / "workbook.py").write_text(DEPTHS, encoding="utf-8")
-    (tmp_path / "measurements.csv").write_text(f"test,x_p [um]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
-    assert of_column(Study(tmp_path).computed, "x_p") == "u from 0.10 to 1.3 um"
+    report = Study(method_folder(tmp_path, DEPTHS, f"test,x_p [um]\n{rows}")).computed
+    assert of_column(report, "x_p") == "u from 0.10 to 1.3 um"
 
 
 def test_page_and_workbook_say_it_and_the_page_says_nothing_of_digits(folder: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import openpyxl
 import pytest
+from helpers import method_folder
 from two_reports import forged
 
 from loopsheet.report.cli import main
@@ -81,13 +82,9 @@ MORE = '[uncertainty.correlation]\n"d, air" = "0.4"\n'
 
 def folder(at: Path, workbook: str, parameters: dict[str, str], more: str = "") -> Path:
     """Write a report folder; what begins with a brace is no text."""
-    at.mkdir(parents=True, exist_ok=True)
-    (at / "workbook.py").write_text(HEAD + workbook + TAIL, encoding="utf-8")
-    (at / "measurements.csv").write_text("test,r [1]\n1,1\n2,2\n", encoding="utf-8")
     said = "".join(f"{n} = {t}\n" if t[0] == "{" else f'{n} = "{t}"\n' for n, t in parameters.items())
-    toml = f'workbook = "workbook.py"\n[parameters]\n{said}[measurements]\nfile = "measurements.csv"\n{more}'
-    (at / "report.toml").write_text(toml, encoding="utf-8")
-    return at
+    code = HEAD + workbook + TAIL
+    return method_folder(at, code, "test,r [1]\n1,1\n2,2\n", f"[parameters]\n{said}{more}")
 
 
 def build(at: Path) -> Path:
@@ -399,10 +396,7 @@ def test_a_number_that_falls_with_an_influence_of_another_report(
     given = 'm = "2.000 g, u = 0.002 g"\nV = "1.000 mL, u = 0.004 mL"'
     taken = 'b = { from = "one/out/values.json", cell = "b" }\nc = "1.000, u = 0.001"'
     for at, code, parameters in ((one, first, given), (two, second, taken)):
-        at.mkdir(parents=True, exist_ok=True)
-        (at / "workbook.py").write_text(code, encoding="utf-8")
-        toml = f'workbook = "workbook.py"\n[parameters]\n{parameters}\n'
-        (at / "report.toml").write_text(toml, encoding="utf-8")
+        method_folder(at, code, more=f"[parameters]\n{parameters}\n")
     assert main(["build", str(one)]) == main(["build", str(two)]) == 0
     assert main(["check", str(two)]) == 0
     assert "xlsx" in capsys.readouterr().out

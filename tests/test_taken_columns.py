@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import openpyxl
 import pytest
+from helpers import method_folder
 from two_reports import CAMPAIGN, COLUMN, GIVEN, MASS, OWN, READ, build, folder, forged, lab
 
 from loopsheet.report.cli import main
@@ -384,20 +385,10 @@ READINGS = ("jam A,1.0\n", "jam A,1.2\n", "jam B,3.0\n", "jam B,3.2\n")
 
 def jars(at: Path, table: str, readings: tuple[str, ...] = READINGS) -> Path:
     """A report that takes the content of each jar."""
-    for own, method, content in (
-        (at / "lab", JAM, "jar,y [mg]\n" + "".join(readings)),
-        (at, RECOVERY, table),
-    ):
-        own.mkdir(exist_ok=True)
-        (own / "workbook.py").write_text(method, encoding="utf-8")
-        (own / "measurements.csv").write_text(content, encoding="utf-8")
-        toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-        taken = '[measurements.taken]\nw = { from = "lab/out/values.json", cell = "w" }\n'
-        taken += '[uncertainty]\nf = "exact"\n'
-        u = '[uncertainty]\ny = "u = 0.1"\n'
-        (own / "report.toml").write_text(toml + (taken if own == at else u), encoding="utf-8")
-    build(at / "lab")
-    return at
+    content = "jar,y [mg]\n" + "".join(readings)
+    build(method_folder(at / "lab", JAM, content, '[uncertainty]\ny = "u = 0.1"\n'))
+    taken = '[measurements.taken]\nw = { from = "lab/out/values.json", cell = "w" }\n'
+    return method_folder(at, RECOVERY, table, f'{taken}[uncertainty]\nf = "exact"\n')
 
 
 def told_of_rows(at: Path) -> list[tuple[str, str]]:

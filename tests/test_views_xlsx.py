@@ -12,6 +12,7 @@ from typing import Any
 
 import openpyxl
 import pytest
+from helpers import method_folder
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.formula import ArrayFormula
 
@@ -517,11 +518,9 @@ class Line(Method):
 def test_what_rows_are_weighed_by_follows_them_where_it_is_a_share(
     tmp_path: Path, stated: str, follows: str
 ) -> None:
-    (tmp_path / "workbook.py").write_text(LINE)
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
-    (tmp_path / "report.toml").write_text(f'{toml}x = "exact"\ny = "{stated}"\n')
-    (tmp_path / "m.csv").write_text("reading,x [mm],y [V]\n1,1,\n2,2,2.1\n3,3,2.9\n4,4,4.2\n5,5,4.9\n")
-    report = Study(tmp_path).computed
+    rows = "reading,x [mm],y [V]\n1,1,\n2,2,2.1\n3,3,2.9\n4,4,4.2\n5,5,4.9\n"
+    stated = f'[uncertainty]\nx = "exact"\ny = "{stated}"\n'
+    report = Study(method_folder(tmp_path, LINE, rows, stated)).computed
     made = openpyxl.load_workbook(io.BytesIO(xlsx.render(report, grid_of(report))))
     (sheet,) = (each for each in made if each.title == "readings")
     heads = next(texts for row in sheet.iter_rows() if "u_y [V]" in (texts := [str(c.value) for c in row]))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from helpers import method_folder
 from sympy import Function, IndexedBase, Symbol
 
 from loopsheet.derivations.dimensions import Dimensions, dimension_of_unit
@@ -54,15 +55,9 @@ MEANT = ("impact speed", "imprint", "approach", "density of the ball", "restitut
 
 
 def folder(place: Path, words: str) -> Path:
-    place.mkdir(exist_ok=True)
-    (place / "workbook.py").write_text(WORKBOOK % words, encoding="utf-8")
-    (place / "report.toml").write_text(
-        'title = "Powers"\nworkbook = "workbook.py"\n[parameters]\nrho = "0.10 W/A"\n'
-        '[measurements]\nfile = "m.csv"\n',
-        encoding="utf-8",
-    )
-    (place / "m.csv").write_text("test,v [W/A],x_p [A]\n1,2.00,0.50\n2,4.00,1.00\n", encoding="utf-8")
-    return place
+    rows = "test,v [W/A],x_p [A]\n1,2.00,0.50\n2,4.00,1.00\n"
+    more = 'title = "Powers"\n[parameters]\nrho = "0.10 W/A"\n'
+    return method_folder(place, WORKBOOK % words, rows, more)
 
 
 def read(out: Path) -> Iterator[tuple[str, str]]:
