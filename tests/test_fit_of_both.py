@@ -57,8 +57,7 @@ def pearson(folder: Path) -> Path:
     """A report folder of Pearson's data with York's weights."""
     (x, y), (u_x, u_y) = PEARSON, ([repr(weight**-0.5) for weight in own] for own in YORK)
     rows = "".join(",".join(each) + "\n" for each in zip(x, u_x, y, u_y, strict=True))
-    method_folder(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
-    return folder
+    return method_folder(folder, LINE, f"x [1],u(x) [1],y [1],u(y) [1]\n{rows}")
 
 
 def test_all_that_is_published_of_pearsons_data_with_yorks_weights(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import spreadsheets
+from helpers import method_folder
 from test_fit_of_both import pearson
 
 from loopsheet.report.cells.values import CODES
@@ -95,13 +96,7 @@ def test_a_fit_to_many_rows_has_a_value_in_every_cell(tmp_path: Path, require: C
     x = np.linspace(0.5, 2.0, MANY)
     y = 250 + 40 * x - 3 * x**2 + 0.5 * x**3 + generator.normal(0, 0.01, MANY)
     rows = [f"{n},{at:.4f},{height:.3f}" for n, (at, height) in enumerate(zip(x, y, strict=True), 1)]
-    folder = tmp_path / "cubic"
-    folder.mkdir()
-    (folder / "workbook.py").write_text(METHOD)
-    (folder / "measurements.csv").write_text("\n".join(["test,x [V],y [K]", *rows, ""]))
-    (folder / "report.toml").write_text(
-        'title = "Many"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    )
+    folder = method_folder(tmp_path / "cubic", METHOD, "\n".join(["test,x [V],y [K]", *rows, ""]))
     book = spreadsheets.deliver(folder, drawn=False)
     read = spreadsheets.recalculate(
         require("soffice", "libreoffice"), tmp_path / "office", {"many": book.edited({})}
@@ -155,14 +150,8 @@ def test_a_step_that_leaves_the_domain_is_too_long_in_a_worksheet_too(
     tmp_path: Path, require: Callable[..., str]
 ) -> None:
     """The sum of squares there has no value, and nothing that followed had one."""
-    folder = tmp_path / "growth"
-    folder.mkdir()
     rows = "".join(f"{n},{n / 2:.1f},{y:.3f}\n" for n, y in enumerate(READINGS, start=1))
-    (folder / "workbook.py").write_text(GROWTH)
-    (folder / "measurements.csv").write_text(f"point,x [m],y [V]\n{rows}")
-    (folder / "report.toml").write_text(
-        'title = "Growth"\nworkbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    )
+    folder = method_folder(tmp_path / "growth", GROWTH, f"point,x [m],y [V]\n{rows}")
     book = spreadsheets.deliver(folder, drawn=False)
     every: dict[str, spreadsheets.Edits] = {
         "as it is": {}, "another": {("y", 4): 1.9}, "one that is missing": {("y", 3): None},

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import spreadsheets
+from helpers import method_folder
 from small_report import end_gauge
 
 from loopsheet.report.cells.grid import checked
@@ -399,19 +400,13 @@ def test_uncertainties_of_an_edited_workbook_follow_its_readings(
     voltages = [(5.007, 9.663), (4.994, 9.639), (5.005, 9.640), (4.990, 9.685), (4.999, 9.678)]
 
     def delivered(name: str, first: float, shunt: float) -> spreadsheets.Delivered:
-        folder = tmp_path / name
-        folder.mkdir()
         rows = "".join(
             f"{n},{v},{w}\n" for n, (v, w) in enumerate([(first, voltages[0][1]), *voltages[1:]], 1)
         )
-        (folder / "workbook.py").write_text(READINGS, encoding="utf-8")
-        (folder / "d.csv").write_text(f"test,V [V],W [V]\n{rows}", encoding="utf-8")
-        (folder / "report.toml").write_text(
-            f'workbook = "workbook.py"\n[parameters]\nS = "{shunt} V, u = 0.05 % of reading + 1 mV"\n'
-            '[measurements]\nfile = "d.csv"\n[uncertainty]\npaired = ["V", "W"]\n',
-            encoding="utf-8",
-        )
-        return spreadsheets.deliver(folder)
+        more = f'[parameters]\nS = "{shunt} V, u = 0.05 % of reading + 1 mV"\n'
+        more += '[uncertainty]\npaired = ["V", "W"]\n'
+        rows = f"test,V [V],W [V]\n{rows}"
+        return spreadsheets.deliver(method_folder(tmp_path / name, READINGS, rows, more))
 
     before, after = delivered("before", 5.007, 4.0), delivered("after", 5.057, 9.0)
     edited = before.edited({("V", 0): 5.057, ("S", 0): 9.0})
@@ -445,14 +440,10 @@ def test_what_a_workbook_cannot_know_after_an_edit_is_not_told(
     require: Callable[..., str], tmp_path: Path
 ) -> None:
     """Readings made equal, slopes that came to 0, uncertainties that are none, limits in the wrong order."""
-    (tmp_path / "workbook.py").write_text(UNKNOWN, encoding="utf-8")
-    (tmp_path / "d.csv").write_text("test,V [V]\n1,5.01\n2,4.99\n3,5.03\n", encoding="utf-8")
-    (tmp_path / "report.toml").write_text(
-        'workbook = "workbook.py"\n[parameters]\nS = "6.00 V, u = 0.02 V"\n[measurements]\nfile = "d.csv"\n'
-        '[uncertainty]\nV = "scatter"\n[limits]\nD = "10 .. 12 V, guard = U"\n',
-        encoding="utf-8",
-    )
-    made = spreadsheets.deliver(tmp_path)
+    more = '[parameters]\nS = "6.00 V, u = 0.02 V"\n'
+    more += '[uncertainty]\nV = "scatter"\n[limits]\nD = "10 .. 12 V, guard = U"\n'
+    rows = "test,V [V]\n1,5.01\n2,4.99\n3,5.03\n"
+    made = spreadsheets.deliver(method_folder(tmp_path, UNKNOWN, rows, more))
     cells = spreadsheets.cells_of(made.content)["uncertainty"]
     at = {str(said): f"B{cell[1:]}" for cell, said in reversed(cells.items()) if cell.startswith("A")}
     source = next(cell[1:] for cell, said in cells.items() if cell[0] == "A" and said == "S")

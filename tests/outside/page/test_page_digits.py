@@ -10,6 +10,7 @@ from shutil import copytree
 import driving
 import pytest
 from driving import Live
+from helpers import method_folder
 from uncertain_data import POLES
 
 from loopsheet.report.build import build
@@ -209,18 +210,9 @@ def test_what_is_one_estimate_stands_together_after_an_edit(open_page: Open, tmp
     """What most of it comes from: all readings of V, by one standard uncertainty with degrees of freedom."""
 
     def written(name: str, first: str) -> Path:
-        folder = tmp_path / name
-        folder.mkdir()
-        (folder / "workbook.py").write_text(MEANS, encoding="utf-8")
-        (folder / "d.csv").write_text(
-            f"test,V [V],W [V]\n1,{first},4.1\n2,5.2,4.25\n3,5.1,4.2\n", encoding="utf-8"
-        )
-        (folder / "report.toml").write_text(
-            'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n'
-            '[uncertainty]\nV = "u = 1 % of reading, dof = 6"\nW = "u = 0.05 V"\n',
-            encoding="utf-8",
-        )
-        return folder
+        rows = f"test,V [V],W [V]\n1,{first},4.1\n2,5.2,4.25\n3,5.1,4.2\n"
+        more = '[uncertainty]\nV = "u = 1 % of reading, dof = 6"\nW = "u = 0.05 V"\n'
+        return method_folder(tmp_path / name, MEANS, rows, more)
 
     folder = written("before", "5.0")
     assert main(["build", str(folder), "--to", "html", "--out", str(tmp_path / "out")]) == 0
@@ -273,9 +265,8 @@ class Cooling(Method, headline="q"):
 
 def test_what_an_edit_leaves_of_an_uncertainty_is_struck_out(open_page: Open, tmp_path: Path) -> None:
     """Of other laws the page knows nothing: beside the new value stands no U that passes for its own."""
-    (tmp_path / "workbook.py").write_text(COOLING, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[parameters]\nr = "0.25, exponential"\nh = "12.0 mm, u = 0.1 mm"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    more = '[parameters]\nr = "0.25, exponential"\nh = "12.0 mm, u = 0.1 mm"\n'
+    method_folder(tmp_path, COOLING, more=more)
     build(Study(tmp_path), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
     told, note = live.page.locator(".headline .sure"), live.page.locator(".headline + .stale")

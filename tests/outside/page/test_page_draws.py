@@ -12,6 +12,7 @@ import driving
 import numpy as np
 import pytest
 from driving import Live
+from helpers import method_folder
 from scipy import stats
 
 from loopsheet.report.cli import main
@@ -128,12 +129,8 @@ class Few(Method, rows="readings", headline="V"):
 def test_errors_of_few_degrees_of_freedom_leave_the_panel_its_uncertainty(
     open_page: Open, tmp_path: Path
 ) -> None:
-    (tmp_path / "workbook.py").write_text(FEW)
-    stated = (
-        'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nv = "u = 0.1 V, dof = 3"\n'
-    )
-    (tmp_path / "report.toml").write_text(stated)
-    (tmp_path / "m.csv").write_text("reading,v [V]\n1,9.31\n2,9.42\n3,9.28\n")
+    stated = '[uncertainty]\nv = "u = 0.1 V, dof = 3"\n'
+    method_folder(tmp_path, FEW, "reading,v [V]\n1,9.31\n2,9.42\n3,9.28\n", stated)
     main(["build", str(tmp_path), "--out", str(tmp_path / "out")])
     live = open_page(tmp_path / "out" / "report.html")
     live.type("v", 2, "9.43")

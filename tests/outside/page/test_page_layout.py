@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from driving import FRAME, Live
+from helpers import method_folder
 
 from loopsheet.report import build
 from loopsheet.report.study import Study
@@ -242,11 +243,8 @@ def test_marks_of_a_logarithmic_axis_stand_apart(open_page: Open, tmp_path: Path
         '    c = measured("mol/L", "concentration", positive=True)\n    c_m = let(mean(c), "mean", like=c)\n'
     )
     code += '    plot(c, c, log="xy")\n'
-    (tmp_path / "workbook.py").write_text(code, encoding="utf-8")
     rows = "".join(f"{n},1.00e-{9 - n}\n" for n in range(1, 10))
-    (tmp_path / "measurements.csv").write_text(f"reading,c [mol/L]\n{rows}", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "measurements.csv"\n'
-    (tmp_path / "report.toml").write_text(toml, encoding="utf-8")
+    method_folder(tmp_path, code, f"reading,c [mol/L]\n{rows}")
     build.build(Study(tmp_path), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html", viewport={"width": 1200, "height": 900})
     live.type("c", 2, "1.01e-7")

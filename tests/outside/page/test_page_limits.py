@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from driving import Live
+from helpers import method_folder
 
 from loopsheet.report.build import build
 from loopsheet.report.study import Study
@@ -110,11 +111,9 @@ def test_a_value_on_an_acceptance_limit_is_on_it(
     """The mean of eight readings of 2.032 mm is 2.0319999999999995 to whoever adds them up in metres."""
     code = "from loopsheet import Method, let, mean, measured\n\nclass Mean(Method, headline='w'):\n"
     code += "    'A mean.'\n    x = measured('mm', 'reading')\n    w = let(mean(x), 'mean')\n"
-    (tmp_path / "workbook.py").write_text(code)
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "d.csv"\n[limits]\n'
-    (tmp_path / "report.toml").write_text(f'{toml}w = "2.022 .. 2.100 mm, guard = 0.010 mm"\n')
     rows = "".join(f"{n},2.050\n" for n in range(1, 9))
-    (tmp_path / "d.csv").write_text(f"reading,x [mm]\n{rows}")
+    more = '[limits]\nw = "2.022 .. 2.100 mm, guard = 0.010 mm"\n'
+    method_folder(tmp_path, code, f"reading,x [mm]\n{rows}", more)
     build(Study(tmp_path), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
     live.input("x", 1).click()
@@ -136,13 +135,12 @@ def test_of_rows_that_are_new_a_build_decides(open_page: Callable[..., Live], tm
 def test_of_a_result_at_a_corner_it_is_told_that_nothing_is_known(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
-    (tmp_path / "workbook.py").write_text(
+    code = (
         "from loopsheet import Method, given, let\n\nclass Corner(Method, headline='p'):\n    'A distance.'\n"
         "    m = given('mm', 'one')\n    z = given('mm', 'other')\n"
         "    p = let(max(m - z, z - m), 'distance')\n"
     )
-    numbers = 'm = "5.2 mm, u = 0.02"\nz = "1.0 mm, u = 0.2"\n'
-    (tmp_path / "report.toml").write_text(f'workbook = "workbook.py"\n[parameters]\n{numbers}')
+    method_folder(tmp_path, code, more='[parameters]\nm = "5.2 mm, u = 0.02"\nz = "1.0 mm, u = 0.2"\n')
     build(Study(tmp_path), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
     live.type("z", "", "5.2")

@@ -9,6 +9,7 @@ from shutil import copytree
 import driving
 import pytest
 from driving import Live
+from helpers import method_folder
 from test_fit_of_both import pearson
 
 from loopsheet.report.build import build
@@ -66,7 +67,7 @@ def test_a_line_with_errors_in_both_variables_is_fitted_anew(
     live = open_page(tmp_path / "out" / "report.html")
     issued = Study(folder).computed.values
     live.type("y", 4, "4.9")
-    table = folder / "m.csv"
+    table = folder / "measurements.csv"
     rows = table.read_text(encoding="utf-8")
     assert rows.count(",4.6,") == 1
     table.write_text(rows.replace(",4.6,", ",4.9,"), encoding="utf-8")
@@ -108,12 +109,7 @@ def test_stated_uncertainties_that_a_method_names_stand_in_the_page(
     open_page: Callable[..., Live], tmp_path: Path
 ) -> None:
     """They are told beside what they are of, and follow what is typed there."""
-    folder = tmp_path / "counts"
-    folder.mkdir()
-    (folder / "workbook.py").write_text(COUNTS, encoding="utf-8")
-    (folder / "m.csv").write_text(COUNTED, encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\nt = "exact"\n'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    folder = method_folder(tmp_path / "counts", COUNTS, COUNTED, '[uncertainty]\nt = "exact"\n')
     build(Study(folder), tmp_path / "out", ("html",))
     live = open_page(tmp_path / "out" / "report.html")
     assert live.cell("u_N", "2").text == "28.11"
@@ -121,6 +117,6 @@ def test_stated_uncertainties_that_a_method_names_stand_in_the_page(
     live.type("N", 3, "700")
     live.type("N", 1, "1000")
     live.page.locator('[data-use="4"]').click()
-    saved = live.save(tmp_path / "saved", "workbook.py", file="m.csv")
+    saved = live.save(tmp_path / "saved", "workbook.py")
     assert live.errors == []
     assert driving.differences(live.cells(), Study(saved).computed.values) == []

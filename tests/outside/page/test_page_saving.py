@@ -8,6 +8,7 @@ from pathlib import Path
 import driving
 import pytest
 from driving import Live
+from helpers import method_folder
 from two_reports import COLUMN, MASS, lab
 from two_reports import folder as written
 
@@ -225,14 +226,8 @@ class Heats(Method, headline="heat"):
 
 @pytest.mark.parametrize("more", ["", "[parameters]\n"])
 def test_an_edited_default_keeps_what_is_stated_of_it(open_page: Open, tmp_path: Path, more: str) -> None:
-    folder = tmp_path / "own"
-    folder.mkdir()
-    (folder / "workbook.py").write_text(DEFAULTS, encoding="utf-8")
-    (folder / "measurements.csv").write_text(
-        "T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n300.4,0.2,2.0\n", encoding="utf-8"
-    )
-    toml = f'workbook = "workbook.py"\n{more}[measurements]\nfile = "measurements.csv"\n'
-    (folder / "report.toml").write_text(toml, encoding="utf-8")
+    rows = "T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n300.4,0.2,2.0\n"
+    folder = method_folder(tmp_path / "own", DEFAULTS, rows, more)
     live = open_page(page_of(folder, tmp_path / "out"))
     for name, text in {"T_0": "290.2", "c": "460", "m": "2.5"}.items():
         live.type(name, "", text)
@@ -253,14 +248,8 @@ def test_what_was_not_edited_stands_as_it_stood(
     open_page: Open, tmp_path: Path, edited: str, saved: str
 ) -> None:
     """What stands in parentheses counts units of the last digit: it is written out where that was edited."""
-    folder = tmp_path / "own"
-    folder.mkdir()
-    (folder / "workbook.py").write_text(DEFAULTS, encoding="utf-8")
-    (folder / "measurements.csv").write_text("T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n", encoding="utf-8")
-    toml = 'workbook = "workbook.py"\n[parameters]\nm = "2.500(40) kg"\n'
-    (folder / "report.toml").write_text(
-        f'{toml}[measurements]\nfile = "measurements.csv"\n', encoding="utf-8"
-    )
+    rows = "T [K],u(T) [K],x [m]\n300.1,0.2,1.0\n"
+    folder = method_folder(tmp_path / "own", DEFAULTS, rows, '[parameters]\nm = "2.500(40) kg"\n')
     live = open_page(page_of(folder, tmp_path / "out"))
     live.type(edited, "", {"T_0": "290.2", "m": "2.51"}[edited])
     text = (live.save(tmp_path / "saved", "workbook.py") / "report.toml").read_text(encoding="utf-8")
