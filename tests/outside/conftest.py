@@ -4,11 +4,14 @@ import fcntl
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import pytest
+
+if TYPE_CHECKING:
+    from spreadsheets import Cells, Recalculate
 
 
 @pytest.fixture(scope="session")
@@ -65,16 +68,13 @@ def environment() -> Callable[..., Path]:
     return install
 
 
-@pytest.fixture(scope="module")
-def read(
-    request: pytest.FixtureRequest,
-    delivered: Any,
-    require: Callable[..., str],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> dict[str, dict[str, dict[str, Any]]]:
-    """The cells of a module's workbook, `delivered`, after each of its EDITS, by LibreOffice."""
+@pytest.fixture(scope="session")
+def recalculate(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> "Recalculate":
+    """Give `recalculate(books)`: the cells of workbooks after LibreOffice computed them, each by its name."""
     import spreadsheets  # most tests need none
 
-    soffice = require("soffice", "libreoffice")
-    books = {name: delivered.edited(edits) for name, edits in request.module.EDITS.items()}
-    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
+    def read(books: Mapping[str, bytes]) -> "Cells":
+        soffice = require("soffice", "libreoffice")
+        return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
+
+    return read

@@ -7,7 +7,7 @@ import io
 import re
 import subprocess
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, cached_property
@@ -39,6 +39,10 @@ class Error(str):
 Typed = float | str | bool | Error | None
 Edits = Mapping[tuple[str, int], Typed]
 """What is typed: by column and row (from 0), a number in the cell's unit, a text, or None for nothing."""
+
+Cells = dict[str, dict[str, dict[str, Any]]]
+"""Values of workbooks, by name, worksheet and address."""
+Recalculate = Callable[[Mapping[str, bytes]], Cells]
 
 LARGEST = 1e-12
 """Largest difference, relative to the cell or to a millionth of its column's largest."""
@@ -311,15 +315,8 @@ def compare(
 # --- LibreOffice -----------------------------------------------------------------------------------------
 
 
-def recalculate(
-    soffice: str, folder: Path, books: Mapping[str, bytes]
-) -> dict[str, dict[str, dict[str, Any]]]:
-    """Let LibreOffice recalculate workbooks; then read every cell.
-
-    Returns
-    -------
-    mapping of name to mapping of worksheet to mapping of address to value
-    """
+def recalculate(soffice: str, folder: Path, books: Mapping[str, bytes]) -> Cells:
+    """Let LibreOffice recalculate workbooks; then read every cell."""
     return {name: cells_of(content) for name, content in recalculated(soffice, folder, books).items()}
 
 

@@ -370,7 +370,9 @@ class AtLimits(Method, rows="points"):
 """
 
 
-def test_what_is_at_its_limit_conforms_there_too(require: Callable[..., str], tmp_path: Path) -> None:
+def test_what_is_at_its_limit_conforms_there_too(
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
+) -> None:
     """In doubles 9.95 - 10 is a little less than -0.05."""
     files = {
         "workbook.py": AT_LIMITS,
@@ -381,8 +383,7 @@ def test_what_is_at_its_limit_conforms_there_too(require: Callable[..., str], tm
     delivered = Office.made(tmp_path / "made", files)
     every = delivered.report.uncertain().conformities
     assert {each.decision for each in every} == {Decision.CONFORMS}
-    books = {"edited": delivered.edited({("x", 0): 10.05})}
-    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)["edited"]
+    read = recalculate({"edited": delivered.edited({("x", 0): 10.05})})["edited"]
     found = budgets(read["uncertainty"])
     assert {found[each.budget.cell]["decision", "B"] for each in every} == {Decision.CONFORMS.value}
 
@@ -420,7 +421,7 @@ def test_no_sensitivity_is_a_number_as_issued(folder: str) -> None:
 
 
 def test_a_sensitivity_without_formula_is_told_of_the_inputs_as_issued(
-    require: Callable[..., str], tmp_path: Path
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """What a fit adjusts in each group: neither u nor U nor what is decided with it outlives an edit."""
     delivered = Office.made(tmp_path / "few", method(ADJUSTED, NEAR_A_LINE.format("1.60"), "", SURE["xy"]))
@@ -429,7 +430,7 @@ def test_a_sensitivity_without_formula_is_told_of_the_inputs_as_issued(
         "edited": delivered.edited({("y", 0): 1.64}),
         "typed again": delivered.edited({("y", 0): 1.60}),
     }
-    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)
+    read = recalculate(books)
     issued = budgets(spreadsheets.cells_of(delivered.content)["uncertainty"])
     assert {result[:-3] for result in issued} == {"level", "typical"}
     for name, cells in read.items():
@@ -457,7 +458,7 @@ class Repeated(Method, rows="deliveries", headline="s"):
 
 
 def test_what_second_order_takes_away_is_a_share_of_the_first(
-    require: Callable[..., str], tmp_path: Path
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """Readings that scatter less have less of it, too: nothing is left of u if it stays as issued."""
     numbers = [998.1, 995.4, 997.2, 996.8, 994.9]
@@ -471,7 +472,7 @@ def test_what_second_order_takes_away_is_a_share_of_the_first(
 
     before, after = made("before", numbers), made("after", quiet)
     books = {"edited": before.edited({("m", row): number for row, number in enumerate(quiet)})}
-    read = spreadsheets.recalculate(require("soffice", "libreoffice"), tmp_path, books)["edited"]
+    read = recalculate(books)["edited"]
     (found,) = budgets(read["uncertainty"]).values()
     issued, rebuilt = (
         budgets(spreadsheets.cells_of(each.content)["uncertainty"])["s"] for each in (before, after)

@@ -1,8 +1,6 @@
 """Fits of methods in LibreOffice: after an edit they are what NumPy makes of it."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +10,6 @@ from test_fit_of_both import pearson
 
 from loopsheet.report.cells.values import CODES
 from loopsheet.report.inputs.folders import PAPER
-
-Read = dict[str, dict[str, dict[str, Any]]]
 
 EDITS: dict[str, tuple[str, spreadsheets.Edits]] = {
     "a line": ("gum_h3", {}),
@@ -42,18 +38,14 @@ def delivered() -> dict[str, spreadsheets.Delivered]:
 
 @pytest.fixture(scope="module")
 def read(
-    delivered: dict[str, spreadsheets.Delivered],
-    require: Callable[..., str],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Read:
-    soffice = require("soffice", "libreoffice")
-    books = {name: delivered[folder].edited(edits) for name, (folder, edits) in EDITS.items()}
-    return spreadsheets.recalculate(soffice, tmp_path_factory.mktemp("office"), books)
+    delivered: dict[str, spreadsheets.Delivered], recalculate: spreadsheets.Recalculate
+) -> spreadsheets.Cells:
+    return recalculate({name: delivered[folder].edited(edits) for name, (folder, edits) in EDITS.items()})
 
 
 @pytest.mark.parametrize("name", EDITS)
 def test_an_edited_workbook_is_what_numpy_makes_of_it(
-    delivered: dict[str, spreadsheets.Delivered], read: Read, name: str
+    delivered: dict[str, spreadsheets.Delivered], read: spreadsheets.Cells, name: str
 ) -> None:
     folder, edits = EDITS[name]
     values = delivered[folder].values(edits)
@@ -90,7 +82,9 @@ class Cubic(Method, headline="a b c d spread"):
 '''
 
 
-def test_a_fit_to_many_rows_has_a_value_in_every_cell(tmp_path: Path, require: Callable[..., str]) -> None:
+def test_a_fit_to_many_rows_has_a_value_in_every_cell(
+    tmp_path: Path, recalculate: spreadsheets.Recalculate
+) -> None:
     """LibreOffice computes such columns in threads, if it may, and then leaves #VALUE! in some."""
     generator = np.random.default_rng(1)
     x = np.linspace(0.5, 2.0, MANY)
@@ -98,25 +92,19 @@ def test_a_fit_to_many_rows_has_a_value_in_every_cell(tmp_path: Path, require: C
     rows = [f"{n},{at:.4f},{height:.3f}" for n, (at, height) in enumerate(zip(x, y, strict=True), 1)]
     folder = method_folder(tmp_path / "cubic", METHOD, "\n".join(["test,x [V],y [K]", *rows, ""]))
     book = spreadsheets.deliver(folder, drawn=False)
-    read = spreadsheets.recalculate(
-        require("soffice", "libreoffice"), tmp_path / "office", {"many": book.edited({})}
-    )
+    read = recalculate({"many": book.edited({})})
     found = spreadsheets.compare(book, book.values({}), read["many"])
     assert found.cells > 10 * MANY
     assert [line for line in found.wrong if "'#" in line] == []  # what is left of 290 K has lost some digits
 
 
-def test_a_line_with_errors_in_both_variables(tmp_path: Path, require: Callable[..., str]) -> None:
+def test_a_line_with_errors_in_both_variables(tmp_path: Path, recalculate: spreadsheets.Recalculate) -> None:
     """The points that rows belong to are passes of the loop, too."""
     book = spreadsheets.deliver(pearson(tmp_path), drawn=False)
     every: dict[str, spreadsheets.Edits] = {
         "as it is": {}, "another ordinate": {("y", 3): 4.9}, "one that is missing": {("y", 3): None}
     }  # fmt: skip
-    read = spreadsheets.recalculate(
-        require("soffice", "libreoffice"),
-        tmp_path / "office",
-        {name: book.edited(edits) for name, edits in every.items()},
-    )
+    read = recalculate({name: book.edited(edits) for name, edits in every.items()})
     slopes = set()
     for name, edits in every.items():
         values = book.values(edits)
@@ -147,7 +135,7 @@ READINGS = (0.605, 1.045, 1.431, 1.742, 2.019, 2.263, 2.479, 2.671, 2.845, 3.004
 
 
 def test_a_step_that_leaves_the_domain_is_too_long_in_a_worksheet_too(
-    tmp_path: Path, require: Callable[..., str]
+    tmp_path: Path, recalculate: spreadsheets.Recalculate
 ) -> None:
     """The sum of squares there has no value, and nothing that followed had one."""
     rows = "".join(f"{n},{n / 2:.1f},{y:.3f}\n" for n, y in enumerate(READINGS, start=1))
@@ -157,11 +145,7 @@ def test_a_step_that_leaves_the_domain_is_too_long_in_a_worksheet_too(
         "as it is": {}, "another": {("y", 4): 1.9}, "one that is missing": {("y", 3): None},
         "all but one": {("y", row): None for row in range(1, 10)},
     }  # fmt: skip
-    read = spreadsheets.recalculate(
-        require("soffice", "libreoffice"),
-        tmp_path / "office",
-        {name: book.edited(edits) for name, edits in every.items()},
-    )
+    read = recalculate({name: book.edited(edits) for name, edits in every.items()})
     for name, edits in every.items():
         values = book.values(edits)
         assert np.isfinite(values.scalar("b")) == (name != "all but one")

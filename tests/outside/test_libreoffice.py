@@ -342,7 +342,7 @@ LIMITS = (
 """Of which one accepts, one rejects, and one leaves it open, or nearly."""
 
 
-def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_path: Path) -> None:
+def test_a_budget_is_recalculated_to_the_same(recalculate: spreadsheets.Recalculate, tmp_path: Path) -> None:
     """Degrees of freedom, coverage factor, expanded uncertainty: by the formulas as by the program."""
     books = {}
     for n, (name, stated) in enumerate(BUDGETS.items()):
@@ -358,8 +358,7 @@ def test_a_budget_is_recalculated_to_the_same(require: Callable[..., str], tmp_p
         books[name] = spreadsheets.deliver(folder).content
     shipped = [PAPER.parent / name for name in ("gum_h1", "gum_h2", "gum_h3")]
     books |= {folder.name: spreadsheets.deliver(folder).content for folder in shipped}
-    soffice = require("soffice", "libreoffice")
-    read = spreadsheets.recalculate(soffice, tmp_path / "office", books)
+    read = recalculate(books)
     decided: set[str] = set()
     for name, book in books.items():
         stored = spreadsheets.cells_of(book)["uncertainty"]
@@ -394,7 +393,7 @@ class Readings(Method):
 
 
 def test_uncertainties_of_an_edited_workbook_follow_its_readings(
-    require: Callable[..., str], tmp_path: Path
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """How readings scatter, how they correlate, and what is a share of a number, as a rebuild has them."""
     voltages = [(5.007, 9.663), (4.994, 9.639), (5.005, 9.640), (4.990, 9.685), (4.999, 9.678)]
@@ -410,8 +409,7 @@ def test_uncertainties_of_an_edited_workbook_follow_its_readings(
 
     before, after = delivered("before", 5.007, 4.0), delivered("after", 5.057, 9.0)
     edited = before.edited({("V", 0): 5.057, ("S", 0): 9.0})
-    soffice = require("soffice", "libreoffice")
-    read = spreadsheets.recalculate(soffice, tmp_path / "office", {"edited": edited})["edited"]["uncertainty"]
+    read = recalculate({"edited": edited})["edited"]["uncertainty"]
     expected = spreadsheets.cells_of(after.content)["uncertainty"]
     stale = spreadsheets.cells_of(before.content)["uncertainty"]
     sizes = {
@@ -437,7 +435,7 @@ class Unknown(Method, headline="D square"):
 
 
 def test_what_a_workbook_cannot_know_after_an_edit_is_not_told(
-    require: Callable[..., str], tmp_path: Path
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """Readings made equal, slopes that came to 0, uncertainties that are none, limits in the wrong order."""
     more = '[parameters]\nS = "6.00 V, u = 0.02 V"\n'
@@ -455,8 +453,7 @@ def test_what_a_workbook_cannot_know_after_an_edit_is_not_told(
     for name, typed in {"emptied": {f"D{source}": None}, "negative": {f"D{source}": -0.5}}.items():
         books[name] = spreadsheets.typed(made.content, {"uncertainty": typed})
     books["crossed"] = spreadsheets.typed(made.content, {"uncertainty": {at["lower tolerance limit"]: 13.0}})
-    soffice = require("soffice", "libreoffice")
-    read = spreadsheets.recalculate(soffice, tmp_path / "office", books)
+    read = recalculate(books)
     u = at["standard uncertainty u"]
     assert cells[u] == pytest.approx(0.0231, rel=1e-2)
     for name in ("equal", "emptied", "negative"):
