@@ -33,6 +33,8 @@ from loopsheet.report.machine.memory import ample
 from loopsheet.report.machine.provenance import sources
 
 if TYPE_CHECKING:
+    from random_campaigns import Node
+
     from loopsheet.report.result.result import Report
 
 ample()  # what is imported until here asks for no sympy
@@ -385,6 +387,18 @@ def pytest_report_header(config: pytest.Config) -> str:
 def sizes(pytestconfig: pytest.Config) -> Sizes:
     """How many campaigns to draw, and from what seed."""
     return replace(SIZES[pytestconfig.getoption("campaigns")], seed=pytestconfig.getoption("seed"))
+
+
+@pytest.fixture(scope="module")
+def node(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> "Iterator[Node]":
+    """The programs of the sheets of campaigns in node, printed once for a file."""
+    from random_campaigns import SHEETS, Node, printed_once
+
+    from loopsheet.report.engines import javascript
+
+    programs = [javascript.program(sheet) for sheet in SHEETS]
+    with printed_once(), Node(require("node"), tmp_path_factory.mktemp("node"), programs) as running:
+        yield running
 
 
 @pytest.fixture

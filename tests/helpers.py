@@ -1,7 +1,10 @@
 """What tests of several files share."""
 
+import json
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sympy import Expr, Symbol
@@ -56,6 +59,13 @@ def number_for(e: float) -> float:
     (residual,) = model.returned.residuals
     # Weak damping: c is about 1 - e^2; (L106) also holds for c = 0, which returns any e.
     return _zero(lambda c: _value(residual, c=c, e_o=e), 0.2 * (1 - e**2), (1 - _MARGIN) / e)
+
+
+def in_node(node: str, *parts: str) -> Any:
+    """What a script that prints JSON prints; its parts follow one another."""
+    done = subprocess.run([node, "-"], input="\n".join(parts), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
 def findings_of(read: Callable[..., object]) -> Callable[..., list[str]]:

@@ -59,11 +59,8 @@ def _fast() -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def judged(
-    require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory, sizes: Sizes
-) -> Iterator[Callable[[int], Tally]]:
+def judged(node: Node, sizes: Sizes) -> Callable[[int], Tally]:
     """Give `judged(size)`, which compares the engines on campaigns of this size, once for all tests."""
-    programs = [javascript.program(sheet) for sheet in SHEETS]
 
     @cache
     def judged(size: int) -> Tally:
@@ -75,8 +72,7 @@ def judged(
                 tally.seen.add(repr(campaign))
         return tally
 
-    with Node(require("node"), tmp_path_factory.mktemp("random"), programs) as node:
-        yield judged
+    return judged
 
 
 @pytest.mark.parametrize("size", ALL.engines)

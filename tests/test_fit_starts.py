@@ -14,7 +14,7 @@ from nist_strd import Strd, digits
 from sympy import Rational
 from test_fit import NONLINEAR, Array, cells
 from test_live_second_order import SCRIPTS
-from test_live_uncertain import in_node
+from test_live_uncertain import of_page
 
 from loopsheet.report.cli import main
 from loopsheet.report.engines import ENGINES, exact
@@ -204,7 +204,7 @@ console.log(JSON.stringify([...found]));
 
 def test_so_do_the_draws_of_a_page(tmp_path: Path, require: Callable[..., str]) -> None:
     near, far = (
-        in_node(require("node"), report, {"self": {"document": 1}}, SCRIPTS, DRAWN)
+        of_page(require("node"), report, {"self": {"document": 1}}, SCRIPTS, DRAWN)
         for report in from_near_and_far(tmp_path)
     )
     assert len(near) == len(far) == 2000

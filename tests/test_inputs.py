@@ -70,17 +70,18 @@ def find_workbook(name: str, folder: Path, code: bytes | None) -> Workbook:
 Reader = Callable[..., Inputs]
 
 
+def write_and_load(toml: str = TOML, csv: str | bytes = CSV, published: str | None = None) -> Inputs:
+    """Write a folder where we are, and read it."""
+    for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():
+        if text is not None:
+            Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    return load(Path(), find_workbook)
+
+
 @pytest.fixture
 def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
     """Give a function that writes a folder and reads it."""
     chdir(tmp_path)
-
-    def write_and_load(toml: str = TOML, csv: str | bytes = CSV, published: str | None = None) -> Inputs:
-        for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():
-            if text is not None:
-                Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
-        return load(Path(), find_workbook)
-
     return write_and_load
 
 

@@ -1,17 +1,15 @@
 """What the reader of a folder refuses, every engine refuses too, with the same code in the same cells."""
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from campaign_judging import Tally, compare
-from random_campaigns import SHEETS, Campaign, Node, digits_of, numpy_reads, printed_once
+from random_campaigns import SHEETS, Campaign, Node, digits_of, numpy_reads
 
 from loopsheet.derivations.unit_text import parse_unit
 from loopsheet.report.cells.values import Status
-from loopsheet.report.engines import javascript
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.number_text import read_value
 from loopsheet.report.messages.errors import Findings, Location
@@ -35,13 +33,6 @@ def edited(name: str, row: int, value: float) -> Campaign:
     column = [value if place == row else datum for place, datum in enumerate(PAPER.data[name])]
     data = PAPER.data | {name: column}
     return replace(PAPER, data=data | digits_of(1, data))
-
-
-@pytest.fixture(scope="module")
-def node(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Node]:
-    programs = [javascript.program(sheet) for sheet in SHEETS]
-    with printed_once(), Node(require("node"), tmp_path_factory.mktemp("node"), programs) as running:
-        yield running
 
 
 def reader_allows(name: str, value: float) -> bool:

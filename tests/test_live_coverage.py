@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+from helpers import in_node
 from scipy.special import stdtrit
 
 from loopsheet.report.distribution import Shape
@@ -21,25 +21,15 @@ CLOSE = 1e-4
 ENDED = (Shape.RECTANGULAR, Shape.TRIANGULAR, Shape.ARCSINE)
 
 Error = tuple[Shape, float, float]
-InNode = Callable[[str], list[float]]
+OfPage = Callable[[str], list[float]]
 
 
 @pytest.fixture(scope="session")
-def in_node(require: Callable[..., str]) -> InNode:
+def of_page(require: Callable[..., str]) -> OfPage:
     """The numbers that a line of JavaScript makes of the functions of the page."""
-    functions = RUNTIME.read_text(encoding="utf-8")
-    functions += (TEMPLATES / "live" / "coverage.js").read_text(encoding="utf-8")
-
-    def run(line: str) -> list[float]:
-        script = f"{functions}\nconsole.log(JSON.stringify({line}));"
-        done = subprocess.run(
-            [require("node"), "-"], input=script, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stderr
-        found: list[float] = json.loads(done.stdout)
-        return found
-
-    return run
+    scripts = RUNTIME, TEMPLATES / "live" / "coverage.js"
+    functions = [script.read_text(encoding="utf-8") for script in scripts]
+    return lambda line: in_node(require("node"), *functions, f"console.log(JSON.stringify({line}));")
 
 
 def page(errors: list[Error]) -> list[dict[str, object]]:
@@ -74,17 +64,17 @@ def sums(seed: int, number: int) -> list[list[Error]]:
     return found
 
 
-def test_the_page_has_the_factors_of_a_build(in_node: InNode) -> None:
+def test_the_page_has_the_factors_of_a_build(of_page: OfPage) -> None:
     cases = sums(1, 150)
-    factors = in_node(f"{json.dumps([page(case) for case in cases])}.map(summedFactor)")
+    factors = of_page(f"{json.dumps([page(case) for case in cases])}.map(summedFactor)")
     for case, factor in zip(cases, factors, strict=True):
         law = build(case)
         assert law.below(factor) - law.below(-factor) == pytest.approx(0.95, abs=CLOSE), case
 
 
-def test_errors_that_are_alone_have_the_factors_that_are_known(in_node: InNode) -> None:
+def test_errors_that_are_alone_have_the_factors_that_are_known(of_page: OfPage) -> None:
     alone = [page([(shape, 1.0, math.inf)]) for shape in (*ENDED, Shape.NORMAL)]
-    factors = in_node(f"{json.dumps(alone)}.map(summedFactor)")
+    factors = of_page(f"{json.dumps(alone)}.map(summedFactor)")
     known = [
         0.95 * math.sqrt(3),
         (1 - math.sqrt(0.05)) * math.sqrt(6),
@@ -93,8 +83,8 @@ def test_errors_that_are_alone_have_the_factors_that_are_known(in_node: InNode) 
     assert factors == pytest.approx([*known, 1.959963984540054], rel=3e-6)
 
 
-def test_factors_of_t_distributions(in_node: InNode) -> None:
+def test_factors_of_t_distributions(of_page: OfPage) -> None:
     freedom = [1, 2, 3, 4, 5, 10, 29, 100]
-    assert in_node(f"{freedom}.map(studentFactor)") == pytest.approx(
+    assert of_page(f"{freedom}.map(studentFactor)") == pytest.approx(
         stdtrit(freedom, 0.975).tolist(), rel=1e-11
     )

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import test_far_from_linear as far
 from test_digits import CAMPAIGNS
-from test_live_uncertain import EXAMPLES, in_node
+from test_live_uncertain import EXAMPLES, of_page
 
 from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.result import Report
@@ -47,7 +47,7 @@ def told(require: Callable[..., str]) -> Told:
 
     def run(report: Report, cells: list[Cell], edits: dict[str, str]) -> list[dict[str, float | None]]:
         known = {"self": {"document": 1}, "EDITS": edits, "ASKED": cells}
-        found: list[dict[str, float | None]] = in_node(require("node"), report, known, SCRIPTS, HARNESS)
+        found: list[dict[str, float | None]] = of_page(require("node"), report, known, SCRIPTS, HARNESS)
         return found
 
     return run

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from shutil import copytree
@@ -15,7 +14,7 @@ import gas
 import numpy as np
 import pytest
 import test_order
-from helpers import method_folder
+from helpers import in_node, method_folder
 from test_digits import CAMPAIGNS
 
 from loopsheet.report import stages
@@ -60,22 +59,19 @@ Edits = list[tuple[str, int, str]]
 Told = Callable[[Report, Edits], Any]
 
 
-def in_node(node: str, report: Report, known: dict[str, Any], scripts: tuple[str, ...], harness: str) -> Any:
+def of_page(node: str, report: Report, known: dict[str, Any], scripts: tuple[str, ...], harness: str) -> Any:
     """What a harness behind some of the page's scripts prints of a report; `known`: its constants."""
     head = [f"const LIVE = {live.data(report, Material(report))};"]
     head += [f"const {name} = {json.dumps(value)};" for name, value in known.items()]
     head += ["LIVE.columns = wholeColumns(LIVE.columns);", f"const PROGRAM = {stages.program(report)};"]
     own = [(TEMPLATES / "live" / name).read_text(encoding="utf-8") for name in scripts]
-    script = "\n".join([RUNTIME.read_text(encoding="utf-8"), *head, *own, harness])
-    done = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return in_node(node, RUNTIME.read_text(encoding="utf-8"), *head, *own, harness)
 
 
 @pytest.fixture(scope="session")
 def told(require: Callable[..., str]) -> Told:
     """What the page's scripts tell of the cells of a report, in node."""
-    return lambda report, edits: in_node(require("node"), report, {"EDITS": edits}, SCRIPTS, HARNESS)
+    return lambda report, edits: of_page(require("node"), report, {"EDITS": edits}, SCRIPTS, HARNESS)
 
 
 def agrees(found: Any, report: Report, before: Report) -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Callable
 
 import pytest
+from helpers import in_node
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,10 +27,7 @@ def squares(require: Callable[..., str]) -> Callable[[list[tuple[float, int]]], 
 
     def run(asked: list[tuple[float, int]]) -> list[tuple[float, float]]:
         ask = f"console.log(JSON.stringify({json.dumps(asked)}.map((one) => squares(...one))))"
-        done = subprocess.run(
-            [require("node"), "-"], input=text + ask, capture_output=True, text=True, check=True
-        )
-        return [(each["tail"], each["head"]) for each in json.loads(done.stdout)]
+        return [(each["tail"], each["head"]) for each in in_node(require("node"), text, ask)]
 
     return run
 

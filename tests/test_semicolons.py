@@ -6,25 +6,15 @@ from pathlib import Path
 
 import pytest
 from helpers import findings_of
-from test_inputs import CSV, TOML, WITH_PUBLISHED, find_workbook
+from test_inputs import CSV, WITH_PUBLISHED, Findings, Reader, write_and_load
 
-from loopsheet.report.inputs.inputs import Inputs, load
 from loopsheet.report.messages.errors import InputError
-
-Reader = Callable[..., Inputs]
-Findings = Callable[..., list[str]]
 
 
 @pytest.fixture
 def read(tmp_path: Path, chdir: Callable[[Path], None]) -> Reader:
     """Give a function that writes a folder and reads it."""
     chdir(tmp_path)
-
-    def write_and_load(toml: str = TOML, csv: str = CSV, published: str = "") -> Inputs:
-        for name, text in {"report.toml": toml, "measurements.csv": csv, "published.csv": published}.items():
-            Path(name).write_bytes(text.encode())
-        return load(Path(), find_workbook)
-
     return write_and_load
 
 

@@ -18,6 +18,7 @@ from typing import Any
 import html5lib
 import pytest
 from drawn_files import svg_of
+from helpers import in_node
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -238,7 +239,6 @@ def test_short_script_runs_as_the_long_one(require: Callable[..., str], tmp_path
 # ------------------------------------------------------------------------------------------ numbers
 
 HARNESS = """
-const cases = JSON.parse(require("fs").readFileSync(0, "utf8"));
 const bytes = (hex) => Uint8Array.from(hex.match(/../g), (b) => parseInt(b, 16));
 const doubled = (hex) => new DataView(bytes(hex).buffer).getFloat64(0);
 const hexed = (x) => { const view = new DataView(new ArrayBuffer(8)); view.setFloat64(0, x);
@@ -270,16 +270,7 @@ console.log(JSON.stringify(cases.map(([name, ...rest]) => does[name](...rest))))
 @pytest.fixture(scope="module")
 def in_js(require: Callable[..., str]) -> Callable[[list[list[Any]]], list[Any]]:
     own = [(LIVE / name).read_text(encoding="utf-8") for name in ("numbers.js", "inputs.js")]
-    source = "\n".join([*own, HARNESS])
-
-    def run(cases: list[list[Any]]) -> list[Any]:
-        done = subprocess.run(
-            [require("node"), "-e", source], input=json.dumps(cases).encode(), capture_output=True, check=True
-        )
-        found: list[Any] = json.loads(done.stdout)
-        return found
-
-    return run
+    return lambda cases: in_node(require("node"), *own, f"const cases = {json.dumps(cases)};", HARNESS)
 
 
 def bits(x: float) -> str:

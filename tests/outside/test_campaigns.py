@@ -6,7 +6,7 @@ recalculated by LibreOffice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +14,8 @@ import pytest
 from campaign_books import workbook_reads
 from campaign_judging import Tally, compare
 from campaign_sizes import SIZES, Sizes
-from random_campaigns import KINDS, SHEETS, Node, drawn, printed_once, shares
+from random_campaigns import KINDS, Node, drawn, shares
 
-from loopsheet.report.engines import javascript
 from loopsheet.report.result.agreement import LIMIT
 
 pytestmark = pytest.mark.campaigns
@@ -25,13 +24,6 @@ pytestmark = pytest.mark.campaigns
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "size" in metafunc.fixturenames:
         metafunc.parametrize("size", SIZES[metafunc.config.getoption("campaigns")].workbooks)
-
-
-@pytest.fixture(scope="module")
-def node(require: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Node]:
-    programs = [javascript.program(sheet) for sheet in SHEETS]
-    with printed_once(), Node(require("node"), tmp_path_factory.mktemp("node"), programs) as running:
-        yield running
 
 
 def test_page_workbook_and_numpy_say_what_fifty_digits_say(
