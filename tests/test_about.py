@@ -206,3 +206,37 @@ def test_degrees_of_freedom_are_looked_for_as_they_are_printed(
     method_folder(tmp_path, TWO, more=stated, published=f"{HEADER}\nT,dof(y),,{text},1,,,\n")
     (found,) = Study(tmp_path).refereed.comparisons_u
     assert (found.verdict == "same" or found.refereed is not None) is reached
+
+
+THRICE = """
+from loopsheet import Method, given, let
+
+class Thrice(Method):
+    "A number and three of it."
+    a = given("1", "number")
+    y = let(3 * a, "three of it")
+"""
+
+
+@pytest.mark.parametrize(
+    ("stated", "u", "reached"),
+    [
+        ("u = 0.12", "0.37", True),  # of 0.1234, say
+        ("u = 0.12", "0.39", False),
+        ("u = 0.120", "0.37", False),
+        ("6 % of reading", "0.37", False),  # what is specified is as it is
+        ("+-0.21 rect", "0.37", False),
+    ],
+)
+def test_authors_compute_with_more_digits_of_an_uncertainty_than_they_print(
+    tmp_path: Path, stated: str, u: str, reached: bool
+) -> None:
+    method_folder(
+        tmp_path,
+        THRICE,
+        more=f'[parameters]\na = "2.000, {stated}"\n',
+        published=f"{HEADER}\nT,u(y),,{u},1,,,\n",
+    )
+    (found,) = Study(tmp_path).refereed.comparisons_u
+    assert found.verdict == "differs"
+    assert (found.refereed is not None) is reached
