@@ -13,7 +13,7 @@ from loopsheet.report.study import Study
 HEAD = """\
 from sympy import log
 from loopsheet import (
-    Method, claim, constant, fit, given, let, mean, measured, plot, root, table, unknown
+    Method, claim, constant, fit, given, let, mean, measured, pairs, plot, root, table, unknown
 )
 
 
@@ -136,6 +136,15 @@ a = let(log(x), "logarithm of a length")
 b = let(a[1], "of it")
 """,
         {0: "must be a pure number"},
+    ),
+    "what a member of a pair takes": (
+        """\
+first, second = pairs()
+a = let(first(x) - second(z), "apart")
+b = let(first(K) * first(x), "of what has no rows")
+c = let(first(a) + second(y), "of what failed")
+""",
+        {1: "'z' is not defined", 2: "K has no value for each row, of which a pair has two"},
     ),
     "what a root that is refused would have found": (
         """\

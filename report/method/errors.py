@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import builtins
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar, cast
 
-from sympy import Basic, Dummy
+from sympy import Basic, Dummy, Expr
 
 from ...derivations.equation import Ledger
 from ..cells.units import check_column
@@ -80,6 +80,10 @@ class WatchedBody(MethodBody):
         named = {each for part in formulas if isinstance(part, Basic) for each in part.free_symbols}
         for each in {str(symbol) for symbol in named} & self.announced.keys():
             dict.__setitem__(self, each, _Failed("_"))
+
+    def paired(self, index: str, size: str, members: Sequence[str]) -> tuple[Callable[[Any], Expr], ...]:
+        """The members of a pair, which remember what is wrong with their line, too."""
+        return tuple(map(told_together, super().paired(index, size, members)))
 
     def __missing__(self, name: str) -> Any:
         try:
