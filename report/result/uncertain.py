@@ -23,6 +23,8 @@ TOLERANCE = 1e-3
 """An eigenvalue that is a smaller part of the largest one tells nothing of its own."""
 
 
+COUNTS = 0.05
+"""Terms of second order count from this share of the variance of first order on."""
 COUNT, UNLOOKED = "second order counts", "second order was not looked at"
 """Why an expanded uncertainty may not hold."""
 
@@ -155,6 +157,8 @@ class Budget:
     """The other sources, which do nothing at these values."""
     tied: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """By (str, str); correlations with these."""
+    little: float = 0.0
+    """What second order makes of the variance, in the unit of `second`, where that is too little to count."""
 
     @property
     def estimates(self) -> list[list[Contribution]]:

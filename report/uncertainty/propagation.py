@@ -27,6 +27,7 @@ from ..judge.chain import Chain, SheetDerivatives
 from ..judge.sensitivity import AT_ONCE, NumericSweep
 from ..result.uncertain import (
     COUNT,
+    COUNTS,
     UNLOOKED,
     Budget,
     Conformity,
@@ -44,7 +45,7 @@ from .coverage import assigned, coverage, of_sum, with_correlated
 from .large import Contributions, largest
 from .misfit import least_squares_of_errors
 from .monte_carlo import SOME, by_draws, sample
-from .second_order import COUNTS, SecondOrder, beside, root_of
+from .second_order import SecondOrder, beside, root_of
 from .sources import correlated, given, sources
 
 Array = NDArray[np.float64]
@@ -312,8 +313,19 @@ class Spread:
         )
         own_parts = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
         summed, least = tuple(self._summed(column)), _least(column)
+        little = 0.0
+        if self.second and not (second or unlooked):
+            little = float(np.nan_to_num(self.second.variance(cell, found, little=True))[0])
         return Budget(
-            self.values.address(name, row), name, label, *own_parts, summed, least=least, idle=idle, tied=tied
+            self.values.address(name, row),
+            name,
+            label,
+            *own_parts,
+            summed,
+            least=least,
+            idle=idle,
+            tied=tied,
+            little=little,
         )
 
     def _leading_to(self, name: str, row: int) -> list[int]:

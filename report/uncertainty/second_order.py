@@ -19,7 +19,7 @@ from ..distribution import FOURTH
 from ..engines.numpy import Program, evaluate
 from ..judge.chain import Chain
 from ..judge.sensitivity import NumericSweep, without_rounding
-from ..result.uncertain import ErrorSource
+from ..result.uncertain import COUNTS, ErrorSource
 from ..sheet import Column, Formula, Iterated, Sheet
 
 Array = NDArray[np.float64]
@@ -28,8 +28,6 @@ STEP = 1 / 16
 """In standard uncertainties. For cells that are of third order in their inputs any step would do."""
 FAR = 2.0
 """In standard uncertainties: about as far as a coverage interval reaches."""
-COUNTS = 0.05
-"""The terms count from this share of the variance of first order on."""
 LARGEST = 1 << 23
 """Sheets times cells; beyond, the terms are not looked at."""
 
@@ -166,20 +164,22 @@ class SecondOrder:
             return "its terms take away most of those of first order, so that others count, too"
         return "the sheet has no values so far from what was given"
 
-    def variance(self, cells: Sequence[tuple[str, int]], first: Array) -> Array:
+    def variance(self, cells: Sequence[tuple[str, int]], first: Array, little: bool = False) -> Array:
         """The variance of some cells that the terms of second order make (cells,).
 
         Parameters
         ----------
         first : float array (cells, sources)
             What each source contributes to first order.
+        little : bool
+            Whether what does not count is asked for, too.
 
         Returns
         -------
         float array (cells,)
-            In the squares of the cells' SI units; 0 where it does not count. NaN where a cell has no value so
-            near to its own, has it of sums over other rows, or rests on what is taken by order; and where
-            terms that count come from a function with corners.
+            In the squares of the cells' SI units; 0 where it does not count, unless that is asked for. NaN
+            where a cell has no value so near to its own, has it of sums over other rows, or rests on what is
+            taken by order; and where terms that count come from a function with corners.
         """
         with np.errstate(all="ignore"):
             used, up, down = self._nearby(cells, still=np.all(first == 0, axis=1))
@@ -201,16 +201,17 @@ class SecondOrder:
             overdone = (more < -own / 2) & ~rounding
             self.overdone |= {name for (name, _), is_over in zip(cells, overdone, strict=True) if is_over}
             more = np.where(own + more > 0, more, bent)  # a sum that would be negative is no variance
-            little = np.maximum(bent, np.abs(more)) <= COUNTS * own
-            bending = little & ~rounding & (self._bent_far(cells, used, first) > COUNTS * own)
+            nothing = np.maximum(bent, np.abs(more)) <= COUNTS * own
+            bending = nothing & ~rounding & (self._bent_far(cells, used, first) > COUNTS * own)
             self.bending |= {name for (name, _), is_bent in zip(cells, bending, strict=True) if is_bent}
             unknown = np.array([name in self.jumping or name in self.torn for name, _ in cells], dtype=bool)
             cornered = np.array([name in self.cornered for name, _ in cells], dtype=bool)
             # What cannot be negative has its corner at 0, and all errors together reach it.
             reached = np.array([name in self.above_zero for name, _ in cells], dtype=bool)
             reached &= FAR * np.sqrt(own) > values
-            sharp = cornered & (~little | reached)
-            found: Array = np.where(unknown | sharp | overdone | bending, np.nan, np.where(little, 0.0, more))
+            sharp = cornered & (~nothing | reached)
+            told = more if little else np.where(nothing, 0.0, more)
+            found: Array = np.where(unknown | sharp | overdone | bending, np.nan, told)
         return found
 
     def _bent_far(self, cells: Sequence[tuple[str, int]], used: NDArray[np.intp], first: Array) -> Array:

@@ -22,7 +22,7 @@ from ..quantity import behind
 from ..result import conformity
 from ..result.numbers import LEADING, SURE, rounded
 from ..result.result import Report
-from ..result.uncertain import Budget, Contribution, ErrorSource
+from ..result.uncertain import COUNTS, Budget, Contribution, ErrorSource
 from .xlsx_inputs import as_printed, same_sum, share_of
 from .xlsx_limits import SHAPES, as_issued, write_limits
 from .xlsx_style import Style, height, number_format
@@ -417,10 +417,12 @@ class _Written:
         """The formula of what is taken from the variance, if it is that: as much of it as was issued.
 
         Where the sources have other shares nobody knows how much: nothing is taken, and U is not too small.
+        What was too little to count stays what it was, and counts where less is left of first order.
         """
         second, issued = self.budget.second, self.budget.u**2 - self.budget.second
         if second >= 0:
-            return ""
+            little = self.budget.little / self.scale**2
+            return f"=IF({little!r}>{COUNTS}*({first}),{little!r},0)" if little > 0 else ""
         same = ",".join(self.same_shares(f"({first})^2", math.sqrt(issued)))
         return f"=IF({first}=0,0,IF(AND({same}),-({first})*{-second / issued!r},0))"
 

@@ -153,8 +153,8 @@ def _write_notes(sheet: Any, style: Style, report: Report, grid: Grid, row: int)
         "What depends on such a cell shows its code; a sum leaves such rows out and says from how many it "
         "was made.",
         "Numbers are stored in full; only what is shown is rounded, as its uncertainty as issued has it. "
-        "Uncertainties follow an edit to first order: whether terms of second order count was looked at for "
-        "the inputs as issued.",
+        "Uncertainties follow an edit to first order: terms of second order are those of the inputs as "
+        "issued, and count from 5 % of a variance on.",
         f"How many rows there are, and which, is fixed in this workbook: to add {rows}"
         + (f" or change {' or '.join(counts)}" if counts else "")
         + f", build the report again. To leave {rows} out, empty one of its cells. Do not sort the rows: "

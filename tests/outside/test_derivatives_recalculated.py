@@ -480,3 +480,43 @@ def test_what_second_order_takes_away_is_a_share_of_the_first(
     assert issued["variance of second order", "B"] < -(rebuilt["standard uncertainty u", "B"] ** 2)
     for what in ("standard uncertainty u", "expanded uncertainty U", "variance of second order"):
         assert found[what, "B"] == pytest.approx(rebuilt[what, "B"], rel=1e-3)
+
+
+SQUARE = """from loopsheet import Method, let, mean, measured
+
+
+class Square(Method, headline="A"):
+    "An area."
+    a = measured("mm", "side")
+    A = let(mean(a) ** 2, "area", "mm^2")
+"""
+LIMITED = """workbook = "workbook.py"
+[measurements]
+file = "m.csv"
+[uncertainty]
+a = "u = 0.30 mm"
+[limits]
+A = "<= 0.15 mm^2"
+[limits.rule]
+guard = "U"
+"""
+
+
+def test_what_second_order_adds_counts_where_less_is_left_of_the_first(
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
+) -> None:
+    """A side of 1.2 mm is of first order; of 0.1 mm nobody knows whether its square conforms."""
+
+    def made(side: str) -> spreadsheets.Delivered:
+        files = {"workbook.py": SQUARE, "m.csv": f"reading,a [mm]\n1,{side}\n", "report.toml": LIMITED}
+        return Office.made(tmp_path / side, files)
+
+    before, after = made("1.20"), made("0.10")
+    read = recalculate({"edited": before.edited({("a", 0): 0.10}), "issued": before.edited({})})
+    found, issued = (budgets(read[name]["uncertainty"])["A"] for name in ("edited", "issued"))
+    rebuilt = budgets(spreadsheets.cells_of(after.content)["uncertainty"])["A"]
+    assert issued["variance of second order", "B"] == 0
+    for what in ("standard uncertainty u", "variance of second order"):
+        assert found[what, "B"] == pytest.approx(rebuilt[what, "B"], rel=1e-9)
+    assert (issued["decision", "B"], found["decision", "B"]) == ("does not conform", "no decision")
+    assert rebuilt["decision", "B"] == found["decision", "B"]
