@@ -251,6 +251,15 @@ def test_a_point_that_stands_elsewhere(text: str, power: int, would: str) -> Non
     assert (found.text, found.value) == (would, Fraction(would))
 
 
+def test_of_one_cell_a_point_is_told_of_once_and_no_slip_stands_behind_it() -> None:
+    """Anything up to 12 will do; 0.60 and 0.060 say no more than 6.0."""
+    told = [each.first for each in said("60 1000.000 2000.000", mean="1.6667e6").explanations]
+    points = [change.would_print for change in told if change.kind == "unit" and change.index]
+    assert points == ["6.0"]
+    assert told[0].kind == "misprint"
+    assert is_slip(told[0].printed, told[0].would_print)
+
+
 def test_transposed_digits_come_first_and_all_that_are_possible_are_listed() -> None:
     """What prints as 1.77 has a square from 3.115 to 3.151."""
     of = said("1.31 1.77 2.83", square="1.72 3.41 8.01")

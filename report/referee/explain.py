@@ -145,7 +145,8 @@ class Doubts:
         # A convention with many digits can be made to fit, as the digits of a misprint can.
         long = change.kind == "parameter" and len(change.would_print) > len("1.25")
         plain = change.kind == "misprint" and not is_slip(change.printed, change.would_print)
-        order = 2 if plain or long else 1 if change.kind == "misprint" else 0
+        of_one = change.kind == "misprint" or (change.kind == "unit" and bool(change.index))
+        order = 2 if plain or long else 1 if of_one else 0
         if each.explanation.as_printed:
             order = -2
         elif self.is_slip_of_it(each) or _is_rounding(change) or _is_neglect(change):

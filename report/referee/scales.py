@@ -218,8 +218,13 @@ def misplaced_inputs(search: Search) -> Iterator[Explained]:
         (change, problem, replace(box, start=start))
         for (change, box), start in zip(alive, starts, strict=True)
     ])  # fmt: skip
+    cells = set[tuple[str, tuple[int, ...]]]()
     for each in told:
+        where = each.explanation.first.cell, each.explanation.first.index
+        if where[1] and where in cells:
+            continue  # its point stands elsewhere: that is told by the least power of ten
         if _tells(each, search.groups.values()):
+            cells.add(where)
             yield each
         else:
             search.drop(certain=False)

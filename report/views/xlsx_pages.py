@@ -208,6 +208,7 @@ _PUBLISHED = (
 def write_published(sheet: Any, style: Style, report: Report, grid: Grid) -> None:
     """Write every published value beside its live recomputation."""
     says = "The recomputed values are live: edit an input and see whether the print is met."
+    says += " What is recomputed of uncertainties, at the end, is as issued." * bool(report.comparisons_u)
     widths = (width for _, width, _ in _PUBLISHED)
     style.page(sheet, "published: printed values beside their recomputation", says, widths)
     for at, (head, _, meaning) in enumerate(_PUBLISHED):
