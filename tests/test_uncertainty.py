@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 from small_report import end_gauge
 
 from loopsheet.report.distribution import Shape
@@ -110,7 +111,8 @@ def test_without_the_zeros_it_is_the_same(tmp_path: Path, monkeypatch: pytest.Mo
     beside = {name: (whole.variances(name), whole.influence([], [name]).rows) for name in columns}
     monkeypatch.setattr(propagation, "AT_ONCE", 1)
     kinds = {name: {type(own) for _, own in whole._blocks(name)} for name in columns}
-    assert kinds["x_m1"] == kinds["alpha"] == kinds["alpha_mean"] == {Contributions}
+    assert kinds["x_m1"] == kinds["alpha"] == {csr_array}
+    assert kinds["C"] == kinds["alpha_mean"] == {Contributions}
     lost = large.LEFT**-1 * 2.0**-51  # where terms of a variance cancel
     for name, (variances, _) in beside.items():
         assert whole.variances(name) == pytest.approx(variances, rel=lost, nan_ok=True)

@@ -183,7 +183,7 @@ class Spread:
         """All cells of a column with their :meth:`contributions`, as many at once as memory holds.
 
         Of a column that memory does not hold at once all cells come together: without their zeros, as a
-        sparse array, or, where these are too few, as
+        sparse array, or, where these are too few for what they share, as
         :class:`~loopsheet.report.uncertainty.large.Contributions`.
         """
         chain, rows = self._along.chain, len(self.values.status[name])
@@ -204,7 +204,7 @@ class Spread:
             found = Contributions(slopes, by_hubs, self._along.whole, weights)
             yield (
                 [(name, row) for row in range(rows)],
-                found.sparse() if found.filled <= AT_ONCE else found,
+                found.sparse() if not by_hubs.nnz or found.filled <= AT_ONCE else found,
             )
 
     def _some(self, name: str) -> Iterator[list[tuple[str, int]]]:
