@@ -9,6 +9,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from ..judge.chain import Numbered
 from ..quantity import Printed
 from ..result.verdict import INPUT, Change
 from .campaign import Array
@@ -23,7 +24,7 @@ PIECES = 160
 """Into how many pieces that range is cut."""
 TRIED = 3
 """In how many of them a search begins: where the others have least left to do."""
-INTO, ZOOMS = 16, 12
+INTO, ZOOMS = 16, 16
 """Into how many smaller ones an interval is cut, and how often: as far as doubles are apart."""
 FURTHEST = 1 << 20
 """Units of the last digit up to which the ways to print a cell are followed."""
@@ -263,16 +264,22 @@ def freed(search: Search, problem: Problem, n: int) -> Array | None:
         if now.mismatch <= 1:
             return now.point
     edges = _edges(problem, n)
-    point = _held(problem, n, edges)
-    if point is not None:
-        return point
     pieces = [problem.box.moved([n], [low], [high], [(low + high) / 2]) for low, high in pairwise(edges)]
     alive = search.alive(pieces, problem)
     if not alive:
         search.drop(certain=True)
         return None
-    for place, start in _promising(problem, n, pieces, alive):
-        first, last = _run(place, alive)
+    steps = -(-PIECES // len(alive))
+    spans = list[Array]()
+    for place in alive:
+        span = np.linspace(pieces[place].low[n], pieces[place].high[n], steps + 1)
+        hangs = place - 1 in alive
+        spans[-1 if hangs else len(spans) :] = [np.append(spans[-1], span[1:]) if hangs else span]
+    point = _held(problem, n, spans)
+    if point is not None:
+        return point
+    for place, start in _promising(problem, n, spans):
+        first, last = _run(alive[place // steps], alive)
         box = problem.box.moved([n], [pieces[first].low[n]], [pieces[last].high[n]], [start])
         box = replace(box, start=problem.restarted(box.start[None])[0])
         now = best(problem, box, until=1.0)
@@ -282,14 +289,13 @@ def freed(search: Search, problem: Problem, n: int) -> Array | None:
     return None
 
 
-def _held(problem: Problem, n: int, edges: Sequence[float]) -> Array | None:
+def _held(problem: Problem, n: int, spans: Sequence[Array]) -> Array | None:
     """The same while all else is exactly as it is printed.
 
     Of one number alone every published value is a curve, and all curves pass what is published between the
     same two of many numbers. These are followed into ever smaller intervals, to as many digits as there are;
     a search for the least of the worst ends between curves that turn.
     """
-    spans = [np.array(edges)]
     for _ in range(ZOOMS):
         values = np.concatenate(spans)
         points = np.tile(problem.box.start, (values.size, 1))
@@ -304,12 +310,29 @@ def _held(problem: Problem, n: int, edges: Sequence[float]) -> Array | None:
             change = np.pad(np.abs(np.diff(off, axis=0)), ((1, 1), (0, 0)))
             change = np.fmax(np.fmax(change[:-2], change[2:]), change[1:-1])  # a curve may turn in between
             missed = (np.minimum(np.abs(off[1:]), np.abs(off[:-1])) / (1 + change)).max(axis=1)
-        missed[np.cumsum([span.size for span in spans])[:-1] - 1] = np.inf  # between two intervals
-        chosen = np.argsort(missed, kind="stable")[:TRIED]  # what has no value comes last
-        spans = [np.linspace(values[i], values[i + 1], INTO + 1) for i in chosen.tolist() if missed[i] <= 1]
+        ends = np.cumsum([span.size for span in spans])
+        missed[ends[:-1] - 1] = np.inf  # between two intervals
+        spans = _around(values, ends, missed)
         if not spans:
             return None
     return None
+
+
+def _around(values: Array, ends: Numbered, missed: Array) -> list[Array]:
+    """The intervals of values that miss least, each with its neighbours, cut into smaller ones.
+
+    `ends`: behind the values of each span. `missed`: by how much each interval does; none is taken of which
+    that is more than 1, or not known.
+    """
+    chosen = list[tuple[int, int]]()
+    for i in np.argsort(missed, kind="stable").tolist():
+        if len(chosen) == TRIED or not missed[i] <= 1:
+            break
+        span = int(np.searchsorted(ends, i, side="right"))
+        first, last = max(i - 1, int(ends[span - 1]) if span else 0), min(i + 2, int(ends[span]) - 1)
+        if not any(low <= i < high for low, high in chosen):
+            chosen.append((first, last))
+    return [np.linspace(values[low], values[high], INTO * (high - low) + 1) for low, high in chosen]
 
 
 def _turned(problem: Problem, n: int) -> Box | None:
@@ -349,14 +372,13 @@ def _run(place: int, alive: list[int]) -> tuple[int, int]:
     return first, last
 
 
-def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) -> list[tuple[int, float]]:
-    """Pieces, and where in them a given cell leaves least to what the others can do, of neighbours the best.
+def _promising(problem: Problem, n: int, spans: Sequence[Array]) -> list[tuple[int, float]]:
+    """Where a given cell leaves least to what the others can do, of neighbours the best; with its number.
 
     A search that begins between two solutions may stay there, where no small step is better.
     """
     problem = problem.guessing
-    share = (np.arange(steps := -(-PIECES // len(alive))) + 0.5) / steps
-    values = np.concatenate([pieces[place].low[n] + pieces[place].width[n] * share for place in alive])
+    values = np.concatenate([(span[1:] + span[:-1]) / 2 for span in spans])
     points = np.tile(problem.box.start, (values.size, 1))
     points[:, n] = values
     off = _sizes(problem, problem.restarted(points))
@@ -367,7 +389,7 @@ def _promising(problem: Problem, n: int, pieces: list[Box], alive: list[int]) ->
     around = np.concatenate([[np.inf], left, [np.inf]])
     lowest = np.flatnonzero((left <= around[:-2]) & (left <= around[2:]))
     chosen = lowest[np.argsort(left[lowest], kind="stable")][:TRIED]
-    return [(alive[place // steps], float(values[place])) for place in chosen.tolist()]
+    return [(place, float(values[place])) for place in chosen.tolist()]
 
 
 def slipped(search: Search) -> Iterator[Explained]:
