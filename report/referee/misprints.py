@@ -197,7 +197,10 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
         if not search.worth(cell.touches):
             continue
         if cell.given:
-            point = freed(search, problem, cell.n)
+            point, is_certain = _freed(search, problem, cell.n)
+            if is_certain:
+                search.drop(certain=True)
+                continue
         else:
             found = search.conflicts.without(cell.touches)
             assert isinstance(found, Best)
@@ -209,7 +212,7 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
         if told is not None:
             alone = cell.given and _comes_out(problem, _at(problem, cell, told.units))
             yield search.explained([told.change], told.problem, told.box, told.best, alone)
-        elif point is not None:
+        else:
             search.drop(certain=False)
 
 
@@ -257,36 +260,44 @@ def _is_told(cell: _Cell, told: _Told | None, units: int) -> bool:
 
 
 def freed(search: Search, problem: Problem, n: int) -> Array | None:
-    """An input in which one given cell has any value, and everything comes out; None if there is none."""
+    """An input in which a given cell has any value and everything comes out; None, and counted, without."""
+    point, is_certain = _freed(search, problem, n)
+    if point is None:
+        search.drop(is_certain)
+    return point
+
+
+def _freed(search: Search, problem: Problem, n: int) -> tuple[Array | None, bool]:
+    """The same, not counted, and whether there is certainly none."""
     turned = _turned(problem, n)
     if turned is not None and search.alive([turned], problem):
         now = best(problem, turned, until=1.0)
         if now.mismatch <= 1:
-            return now.point
+            return now.point, False
     edges = _edges(problem, n)
     pieces = [problem.box.moved([n], [low], [high], [(low + high) / 2]) for low, high in pairwise(edges)]
     alive = search.alive(pieces, problem)
     if not alive:
-        search.drop(certain=True)
-        return None
+        return None, True
     steps = -(-PIECES // len(alive))
     spans = list[Array]()
     for place in alive:
         span = np.linspace(pieces[place].low[n], pieces[place].high[n], steps + 1)
-        hangs = place - 1 in alive
-        spans[-1 if hangs else len(spans) :] = [np.append(spans[-1], span[1:]) if hangs else span]
+        if place - 1 in alive:
+            spans[-1] = np.append(spans[-1], span[1:])
+        else:
+            spans.append(span)
     point = _held(problem, n, spans)
     if point is not None:
-        return point
+        return point, False
     for place, start in _promising(problem, n, spans):
         first, last = _run(alive[place // steps], alive)
         box = problem.box.moved([n], [pieces[first].low[n]], [pieces[last].high[n]], [start])
         box = replace(box, start=problem.restarted(box.start[None])[0])
         now = best(problem, box, until=1.0)
         if now.mismatch <= 1:
-            return now.point
-    search.drop(certain=False)
-    return None
+            return now.point, False
+    return None, False
 
 
 def _held(problem: Problem, n: int, spans: Sequence[Array]) -> Array | None:
