@@ -417,12 +417,14 @@ class _Written:
         """The formula of what is taken from the variance, if it is that: as much of it as was issued.
 
         Where the sources have other shares nobody knows how much: nothing is taken, and U is not too small.
-        What was too little to count stays what it was, and counts where less is left of first order.
+        What was too little to count stays what it was, and counts where less is left of first order; where
+        nothing is, the sources may have come to nothing themselves.
         """
         second, issued = self.budget.second, self.budget.u**2 - self.budget.second
         if second >= 0:
             little = self.budget.little / self.scale**2
-            return f"=IF({little!r}>{COUNTS}*({first}),{little!r},0)" if little > 0 else ""
+            counts = f"AND({first}>0,{little!r}>{COUNTS}*({first}))"
+            return f"=IF({counts},{little!r},0)" if little > 0 else ""
         same = ",".join(self.same_shares(f"({first})^2", math.sqrt(issued)))
         return f"=IF({first}=0,0,IF(AND({same}),-({first})*{-second / issued!r},0))"
 
