@@ -156,6 +156,11 @@ case(
     [6, Rational(15, 2), Rational(35, 2)],
 )
 divided = case("divided_by_zero", 1 / (a[k] - 3), ROWS, [-1, DOMAIN, Rational(1, 4)])
+case("lost_in_a_quotient", 1 / (1 / (a[k] - 3) + 1), ROWS, [DOMAIN, DOMAIN, Rational(4, 5)])
+case("lost_in_an_exponential", exp(-1 / (a[k] - 3) ** 2), ROWS, [exp(-1), DOMAIN, exp(Rational(-1, 16))])
+case("lost_in_the_larger", Max(a[k], -1 / (a[k] - 3) ** 2), ROWS, [2, DOMAIN, 7])
+case("lost_behind_a_sum", n / Sum(1 / (a[k] - 3) ** 2, (k, 1, n)), None, [DOMAIN])
+case("not_lost", 1 / sqrt(a[k] - 3), ROWS, [DOMAIN, DOMAIN, Rational(1, 2)])
 case("a_mean_alongside", Sum(a[k], (k, 1, n)) / n, None, [Rational(9, 2)], alongside=(divided,))
 case("a_median_alongside", Median(a[k], (k, 1, n)), None, [Rational(9, 2)], alongside=(divided,))
 lowered = case("lowered", divided[k] - 1, ROWS, [-2, DOMAIN, Rational(-3, 4)])

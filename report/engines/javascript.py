@@ -65,6 +65,9 @@ class JavaScriptPrinter(JavascriptCodePrinter):
     def _print_BooleanFalse(self, expr: Any) -> str:
         return "false"
 
+    def _print_NaN(self, expr: Any) -> str:
+        return "NaN"
+
     def _print_Infinity(self, expr: Any) -> str:
         return "Infinity"
 
@@ -253,7 +256,7 @@ def _kernels(sheet: Sheet, plan: Plan, nodes: Sequence[PlanNode]) -> str:
     scope.take([each for each in nodes if isinstance(each, Total)])
     found: dict[str, str] = {}
     if isinstance(node, Map):
-        value = scope.function(node.value, alone=True)
+        value = scope.function(node.value_in_doubles, alone=True)
         if node.defined != True:  # noqa: E712 - sympy's true
             found["defined"] = scope.function(node.defined, alone=True)
         if node.positive not in (True, False):

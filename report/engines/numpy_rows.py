@@ -29,10 +29,14 @@ class Kept:
     """Of shape (..., rows)."""
 
     def total(self, terms: Any) -> Any:
-        """The sum of the kept rows (..., 1); NumPy adds pairwise along the last dimension."""
+        """The sum of the kept rows (..., 1); NumPy adds pairwise along the last dimension.
+
+        Infinite is no number, so that a formula which divides by it is none.
+        """
         every = self._every(terms)
         every = np.ascontiguousarray(every) if self._all else np.where(self.mask, every, 0.0)
-        return every.sum(axis=-1, keepdims=True)
+        total = every.sum(axis=-1, keepdims=True)
+        return total + (total - total)
 
     def ordered(self, terms: Any, word: Word) -> Any:
         """What is taken of the kept rows by their order (..., 1); NaN where there is none."""

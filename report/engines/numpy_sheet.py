@@ -52,7 +52,7 @@ def _expressions(node: Node, own: Mapping[str, Symbol]) -> tuple[Any, ...]:
         return (node.value,)
     if isinstance(node, LoopNode):
         return ()  # it brings functions of its own
-    return (node.value, *node.requires) if isinstance(node, Map) else node.requires
+    return (node.value_in_doubles, *node.requires) if isinstance(node, Map) else node.requires
 
 
 def _shared(expressions: Iterable[Any]) -> set[Any]:

@@ -88,16 +88,56 @@ def defined(expression: Any) -> Boolean:
     if not expression.args or expression.is_Atom or expression.is_Indexed:
         return sp.S.true
     if isinstance(expression, REDUCTIONS):
-        outside = sp.Piecewise((sp.Integer(0), defined(expression.function)), (sp.Integer(1), True))
+        outside = _outside(defined(expression.function))
         return sp.S.true if outside == 0 else sp.Eq(sp.Sum(outside, *expression.limits), 0)
     if isinstance(expression, OverRows):
-        outside = sp.Piecewise((sp.Integer(0), defined(expression.args[0])), (sp.Integer(1), True))
+        outside = _outside(defined(expression.args[0]))
         return sp.S.true if outside == 0 else sp.Eq(RowSum(outside, expression.args[1]), 0)
     if isinstance(expression, sp.Piecewise):
         chosen = [sp.Or(sp.Not(condition), defined(value)) for value, condition in expression.args]
         conditions = [condition for _, condition in expression.args]
         return sp.And(*chosen, *map(defined, conditions), sp.Or(*conditions))
     return sp.And(_itself(expression), *map(defined, expression.args))
+
+
+_PASSING = (sp.Abs, sp.Add, sp.Mul, sp.ceiling, sp.cos, sp.cosh, sp.floor, sp.sin, sp.sinh)
+"""What is infinite, or no number, if an argument is."""
+
+
+@lru_cache(maxsize=4096)
+def noticed(expression: Any) -> Boolean:
+    """Say where a finite value is one: no operation without a value is lost in another, as 1/0 is in 1/(1/0).
+
+    Parameters
+    ----------
+    expression : Basic
+        A formula of a plan, with symbols for what is taken over rows.
+
+    Returns
+    -------
+    Boolean
+        True if that is so everywhere: what has no value is infinite, or no number, in doubles.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", nonnegative=True)
+    >>> noticed(1 / (1 / x + 1 / (y + 1))), noticed(sp.exp(-1 / x)), noticed(sp.sqrt(y / x))
+    (Ne(x, 0), Ne(x, 0), True)
+    """
+    if not expression.args or expression.is_Atom or expression.is_Indexed:
+        return sp.S.true
+    if isinstance(expression, sp.Piecewise):
+        chosen = [sp.Or(sp.Not(condition), noticed(value)) for value, condition in expression.args]
+        return sp.And(*chosen, *(defined(condition) for _, condition in expression.args))
+    is_root = isinstance(expression, sp.Pow) and expression.exp.is_number and expression.exp.is_positive
+    passing = is_root or isinstance(expression, (*_PASSING, sp.log))
+    return sp.And(*map(noticed if passing else defined, expression.args))
+
+
+def _outside(holds: Boolean) -> sp.Expr:
+    """1 where something does not hold."""
+    found: sp.Expr = sp.Piecewise((sp.Integer(0), holds), (sp.Integer(1), True))
+    return found
 
 
 def _itself(expression: Any) -> Boolean:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from itertools import chain, count
 from typing import Any
 
@@ -13,7 +13,7 @@ from ...derivations.rebuilt import in_absolute_values, rebuilt
 from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
-from .domain import defined, is_positive, positive, typed_symbols
+from .domain import defined, is_positive, noticed, positive, typed_symbols
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, OverRows, Plan, RootNode, RowOrder, RowSum, Total
 from .special import SPECIAL, in_elementary_terms
 
@@ -162,10 +162,11 @@ class Lowering:
         nodes = list[Node]()
         requires = tuple(self._lower(condition, column, nodes) for condition, _ in column.requires)
         plain = self.plain(expression, column, column.axis)
-        asked = self._assuming(plain)
+        asked, _ = self._assuming(plain)
         sign = positive(asked) if column.positive else false
         value = self._lifted(plain, column, None, nodes)
-        return [*nodes, Map(column, value, requires, defined(asked), sign)]
+        typed, cells = self._assuming(value, nodes)
+        return [*nodes, Map(column, value, requires, defined(asked), sign, noticed(typed).xreplace(cells))]
 
     def step(self, column: Column, expression: Expr) -> list[Node]:
         """The nodes of the next value of an iterated column: where it has none, the whole loop has failed."""
@@ -193,7 +194,7 @@ class Lowering:
             in_absolute_values(lower(rule.expression), rule.unknown),
             lower(rule.value),
             requires,
-            is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))),
+            is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))[0]),
             rule.steps,
         )
         return [*nodes, node]
@@ -203,9 +204,15 @@ class Lowering:
     ) -> Any:
         return self._lifted(self.plain(expression, column, column.axis, unknown), column, unknown, nodes)
 
-    def _assuming(self, plain: Any) -> Any:
+    def _assuming(self, plain: Any, nodes: Iterable[Node] = ()) -> tuple[Any, dict[Symbol, Symbol]]:
+        """The expression in symbols that say what cells and totals may be, and of which each of these is."""
         named = {symbol: self.leaves[symbol] for symbol in plain.free_symbols if symbol in self.leaves}
-        return plain.xreplace(typed_symbols(self.sheet, named))
+        assuming = typed_symbols(self.sheet, named) | {
+            each.symbol: Symbol(each.symbol.name, positive=True)
+            for each in nodes
+            if isinstance(each, Total) and is_positive(self._assuming(each.terms)[0])
+        }
+        return plain.xreplace(assuming), {typed: symbol for symbol, typed in assuming.items()}
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
         """The expression with symbols for what it takes over rows, which become nodes; not for what moves."""

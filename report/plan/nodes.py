@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
 
-from sympy import Basic, Expr, Integer, Symbol, false, true
+from sympy import Basic, Expr, Integer, Piecewise, Symbol, false, nan, true
 from sympy.logic.boolalg import Boolean
 
 from ...derivations.differentiated import differentiated
@@ -148,6 +148,13 @@ class Map:
     """Where it has a value at all; its sums stand in it. False where that is not known."""
     positive: Boolean
     """Where it is positive although no double may hold it; false if its value alone says it."""
+    noticed: Boolean = true
+    """Where a finite value is one: 1/(1/x + 1/y) is 0 in doubles where x is 0, and has no value."""
+
+    @property
+    def value_in_doubles(self) -> Expr:
+        """The value, for engines that go on with the infinity of a division by zero: not a number there."""
+        return self.value if self.noticed == true else Piecewise((self.value, self.noticed), (nan, True))
 
 
 @dataclass(frozen=True)
@@ -220,7 +227,7 @@ def expressions(node: Node) -> Iterator[Basic]:
     elif isinstance(node, Part):
         yield node.value
     elif isinstance(node, Map):
-        yield from (node.value, node.defined, node.positive, *node.requires)
+        yield from (node.value, node.defined, node.positive, node.noticed, *node.requires)
     else:
         signs = (each for each in (node.sign_low, node.sign_high) if each is not None)
         yield from (node.value, node.form, node.low, node.high, node.start, *signs, *node.turning)
@@ -293,5 +300,5 @@ def _bare(node: Node) -> Node:
     if isinstance(node, GivenNode):
         return replace(node, allowed=None)
     if isinstance(node, Map):
-        return replace(node, requires=(), defined=true, positive=false)
+        return replace(node, requires=(), defined=true, positive=false, noticed=true)
     return replace(node, requires=()) if isinstance(node, RootNode) else node

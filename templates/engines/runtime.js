@@ -56,7 +56,8 @@ function layOut(axis, layouts, labels, data) {
 }
 
 // Sums of several terms over the rows that are kept. Of a few rows `terms` adds them as they come, then every
-// addition is compensated (Neumaier): no engine may lose digits to the order of its additions.
+// addition is compensated (Neumaier): no engine may lose digits to the order of its additions. Infinite is no number,
+// so that a formula which divides by it is none.
 function total(kept, count, terms, first = 0, end = kept.length) {
   const sum = new Float64Array(count), lost = new Float64Array(count);
   for (let row = first; row < end; row += BLOCK) {
@@ -67,7 +68,7 @@ function total(kept, count, terms, first = 0, end = kept.length) {
       sum[n] = after;
     }
   }
-  return sum.map((all, n) => (Number.isFinite(lost[n]) ? all + lost[n] : all));
+  return sum.map((all, n) => all + lost[n]);
 }
 
 // The same over the rows of each group: for each of the terms an array of sums.
