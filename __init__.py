@@ -37,6 +37,7 @@ __all__ = [
     "rows",
     "sketch",
     "standing",
+    "stdev",
     "table",
     "total",
     "trace",

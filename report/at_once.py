@@ -22,7 +22,7 @@ _COMPARED = (ast.Eq, ast.NotEq, ast.In, ast.NotIn, ast.Is, ast.IsNot)
 NO_IF = "a formula has no if: write max(a, b) or min(a, b)"
 OF_SYMPY = (
     "functions are those of sympy, not of math or NumPy: from sympy import sqrt, exp, log, sin; over rows "
-    "there are sum(x), mean(x), median(x), max(x) and min(x) of loopsheet"
+    "there are sum(x), mean(x), median(x), stdev(x), max(x) and min(x) of loopsheet"
 )
 _OF_CALCULUS = "{}(...) takes a name for a constant, whatever it is computed from"
 OF_NAMES = (

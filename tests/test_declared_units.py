@@ -20,7 +20,7 @@ from loopsheet.report.study import Study
 PI = Fraction("3.1415926535897932384626433832795028841971693993751")
 
 WORKBOOK = """\
-from sympy import asin, sin
+from sympy import asin, sin, sqrt
 
 from loopsheet import Method, given, let, mean, measured, root, unknown
 
@@ -162,6 +162,16 @@ def test_the_unit_of_a_result_must_fit_its_formula() -> None:
         ("median(share) + sum(share)", "%"),
         ("share - mean(share)", "%"),
         ("mean(M)", "deg"),
+        ("stdev(share)", "%"),
+        ("share - 2 * stdev(share)", "1"),
+        ("(share - mean(share)) / stdev(share)", "1"),
+        ("sqrt(mean(share**2))", "%"),
+        ("sqrt(mean(share**2 * e))", "1"),
+        ("stdev(M)", "deg"),
+        ("stdev(a)", "mm"),
+        ("stdev(first(a) - second(a))", "mm"),
+        ("sqrt(sum(a**2))", "mm"),
+        ("sqrt(sum(a**2) * mean(a))", "m^(3/2)"),
         ("100 * mean(share)", "1"),
         ("1 - mean(share)", "1"),
         ("mean(share) * e", "1"),
@@ -172,9 +182,9 @@ def test_the_unit_of_a_result_must_fit_its_formula() -> None:
     ],
 )
 def test_what_adds_up_per_cents_is_in_per_cent(tmp_path: Path, formula: str, unit: str) -> None:
-    code = WORKBOOK.replace("given, let, mean,", "count, given, let, mean, median,").replace(
-        "    F = let(",
-        f'    share = measured("%", "a share")\n    W = let({formula}, "a number")\n    F = let(',
+    lines = 'share = measured("%", "a share")', "first, second = pairs()", f'W = let({formula}, "a number")'
+    code = WORKBOOK.replace("given, let, mean,", "count, given, let, mean, median, pairs, stdev,").replace(
+        "    F = let(", "\n".join(f"    {line}" for line in (*lines, "F = let("))
     )
     folder(tmp_path, header="place,M [deg],a [mm],share [%]", code=code)
     (tmp_path / "measurements.csv").write_text("place,M [deg],a [mm],share [%]\n1,5,4,55\n2,18,1,57\n")

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 
-from sympy import Add, Basic, Expr, Indexed, Mul, Sum, Symbol, sstr
+from sympy import Add, Basic, Expr, Indexed, Mul, Pow, S, Sum, Symbol, sstr
 
 from ...derivations import dimensions
 from ...derivations.dimensions import PURE, Dimension, DimensionError, Dimensions, text_of
@@ -172,25 +172,37 @@ def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
         return column
     assert isinstance(column.rule, Formula)
     formula = column.rule.expression
-    named = {str(symbol) for symbol in formula.free_symbols}
-    alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
+    named, alike = _named(formula), list[Column]()
+    while named and not alike:  # a root of squares is shown as what is squared
+        alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
+        rules = (columns[name].rule for name in named if own and name in columns)
+        named = set().union(*(_named(rule.expression) for rule in rules if isinstance(rule, Formula)))
     if not own and not _adds_up(formula, {each.name for each in alike}):
         return column
     shown = {written_in(each, columns) for each in alike}
     return replace(column, display=f"like {alike[0].name}") if len(shown) == 1 else column
 
 
-def _adds_up(formula: Expr, names: AbstractSet[str]) -> bool:
-    """Whether a formula adds up, takes away or divides by how many there are what is of such columns."""
+def _named(formula: Expr) -> set[str]:
+    return {str(symbol) for symbol in formula.free_symbols}
+
+
+def _adds_up(formula: Expr, names: AbstractSet[str], degree: Expr = S.One) -> bool:
+    """Whether a formula adds up, takes away or divides by how many there are what is of such columns.
+
+    `degree`: 2 of their squares, of which a root is such a formula again.
+    """
     match formula:
         case Symbol() | Indexed():
-            return name_of(formula) in names
+            return degree == 1 and name_of(formula) in names
+        case Pow():
+            return _adds_up(formula.base, names, degree / formula.exp)
         case Add():
-            return all(_adds_up(term, names) for term in formula.args)
+            return all(_adds_up(term, names, degree) for term in formula.args)
         case Sum() | OrderStatistic():
-            return _adds_up(formula.function, names)
+            return _adds_up(formula.function, names, degree)
         case Mul():
-            rest = [factor for factor in formula.args if not _adds_up(factor, names)]
+            rest = [factor for factor in formula.args if not _adds_up(factor, names, degree)]
             signs = all(factor == -1 for factor in rest if not factor.free_symbols)
             sizes = all(symbol.is_integer for factor in rest for symbol in factor.free_symbols)
             return len(rest) == len(formula.args) - 1 and signs and sizes

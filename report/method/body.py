@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, false, sympify, true
+from sympy import Add, Expr, Indexed, Integer, Max, Min, Sum, Symbol, false, sqrt, sympify, true
 
 from ...derivations.equation import Derivation, Equation, Kind, Ledger
 from ...derivations.reductions import REDUCTIONS, Greatest, Least, Member, OrderStatistic
@@ -138,9 +138,19 @@ class MethodBody(dict[str, Any]):
 
     def mean(self, formula: Any, of: Any = None) -> Expr:
         """The sum by the number of the rows that it runs over."""
-        if of is not None:
-            return self._of_groups(formula, of) / self._of_groups(1, of)
-        return self.total(formula) / (self.axis_of(formula) or self.axis).size
+        return self.total(formula, of=of) / self._summed(formula, of)
+
+    def stdev(self, formula: Any, of: Any = None) -> Expr:
+        """The root of the squares of what is off from the mean, by one less than the number of the rows."""
+        cell = exact(formula)
+        if self.axis_of(cell) is None:
+            raise SheetError(f"stdev() is taken over rows, and {cell} is the same for all of them")
+        squares = self.total((cell - self.mean(cell, of)) ** 2, of=of)
+        return sqrt(squares / (self._summed(cell, of) - 1))
+
+    def _summed(self, formula: Any, of: Any) -> Expr:
+        """Of how many rows the sum of a formula is."""
+        return (self.axis_of(formula) or self.axis).size if of is None else self._of_groups(1, of)
 
     def number(self, formula: Any, of: Any = None) -> Expr:
         """How many rows there are, where it stands; of a formula, in how many rows it has a value."""

@@ -59,6 +59,7 @@ __all__ = [
     "rows",
     "sketch",
     "standing",
+    "stdev",
     "table",
     "total",
     "trace",
@@ -389,6 +390,16 @@ def median(formula: Any, *, of: Any = None) -> Expr:
     `max(x, of=specimen)` over those of each group; `max(a, b)` and `min(a, b)` are of several formulas.
     """
     return current().ordered(Median, formula, of)
+
+
+@told_together
+def stdev(formula: Any, *, of: Any = None) -> Expr:
+    """The standard deviation over all rows, or all pairs, or the rows of each group; as :func:`total`.
+
+    It is that of a sample, by one less than the number of the rows (JCGM 100:2008, 4.2.2): of one row there
+    is none.
+    """
+    return current().stdev(formula, of)
 
 
 @told_together
