@@ -15,6 +15,7 @@ from typing import Any
 import xlsxwriter
 from helpers import whole
 from sympy import (
+    Abs,
     And,
     Expr,
     IndexedBase,
@@ -160,6 +161,10 @@ case("lost_in_a_quotient", 1 / (1 / (a[k] - 3) + 1), ROWS, [DOMAIN, DOMAIN, Rati
 case("lost_in_an_exponential", exp(-1 / (a[k] - 3) ** 2), ROWS, [exp(-1), DOMAIN, exp(Rational(-1, 16))])
 case("lost_in_the_larger", Max(a[k], -1 / (a[k] - 3) ** 2), ROWS, [2, DOMAIN, 7])
 case("lost_behind_a_sum", n / Sum(1 / (a[k] - 3) ** 2, (k, 1, n)), None, [DOMAIN])
+case("lost_in_a_sum", Sum(exp(-1 / (a[k] - 3) ** 2), (k, 1, n)), None, [DOMAIN])
+case("lost_behind_a_logarithm", w.symbol / log(a[k] - 2), ROWS, [DOMAIN, DOMAIN, half / log(5)])
+case("the_size_of_no_number", Abs(log(a[k] - 4)), ROWS, [DOMAIN, DOMAIN, log(3)])
+case("larger_than_no_number", Max(log(a[k] - 4), 0), ROWS, [DOMAIN, DOMAIN, log(3)])
 case("not_lost", 1 / sqrt(a[k] - 3), ROWS, [DOMAIN, DOMAIN, Rational(1, 2)])
 case("a_mean_alongside", Sum(a[k], (k, 1, n)) / n, None, [Rational(9, 2)], alongside=(divided,))
 case("a_median_alongside", Median(a[k], (k, 1, n)), None, [Rational(9, 2)], alongside=(divided,))

@@ -7,7 +7,8 @@ stand. It is slow and not meant for large data.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -97,6 +98,29 @@ class _Failed(Exception):
         self.status = status
 
 
+@contextmanager
+def _real(digits: int) -> Iterator[None]:
+    """Works with so many digits; what is no real number is none, and is not taken for its absolute value."""
+    before = mpmath.mp.trap_complex
+    with mpmath.workdps(digits):
+        mpmath.mp.trap_complex = True
+        try:
+            yield
+        finally:
+            mpmath.mp.trap_complex = before
+
+
+def _log(x: Any) -> Any:
+    """A logarithm; mpmath's of 0 is infinite, which a quotient would make 0."""
+    if x == 0:
+        raise ZeroDivisionError
+    return mpmath.log(x)
+
+
+_OF_REALS = ModuleType("mpmath of real numbers")
+vars(_OF_REALS).update(vars(mpmath), log=_log)
+
+
 def _rows(values: Any) -> Any:
     return values if isinstance(values, (list, tuple, np.ndarray)) else [values]
 
@@ -121,7 +145,7 @@ def as_mpf(value: float | Fraction) -> Any:
 def _held(value: Any, positive: bool) -> Any:
     """A value that a double can hold, be it rounded; a formula without cells may be a plain number."""
     value = mpmath.mpmathify(value)
-    if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
+    if not mpmath.isfinite(value) or (positive and not value > 0):
         raise _Failed(Status.DOMAIN)
     if -1000 < mpmath.mag(value) < 1000:
         return value  # its size is known without comparing it with numbers of a thousand bits
@@ -142,7 +166,7 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     layouts = laid_out(sheet, labels, data)
 
     def run(digits: int, zeros: Set[tuple[str, int]] = frozenset()) -> ExactValues:
-        with mpmath.workdps(digits):
+        with _real(digits):
             given = {
                 name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds
             }
@@ -336,7 +360,7 @@ class _Exact:
             points, right = [low(row)], high(row)
             for point in turning:
                 place = point(row)
-                if not isinstance(place, mpmath.mpc) and points[-1] < place < right:
+                if points[-1] < place < right:
                     points.append(place)
             points.append(right)
             inner = [form(row, point) for point in points[1:-1]]
@@ -435,7 +459,7 @@ class _Scope:
     `kept` (mapping of axis name to list of int): the rows that sums over an axis run over.
     """
 
-    module: ModuleType = mpmath
+    module: ModuleType = _OF_REALS
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
         self.engine, self.column, self.kept = engine, column, kept
@@ -524,12 +548,9 @@ class _Scope:
     def _taken(
         self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
     ) -> list[Any]:
-        """What is taken of several terms over rows; nothing of no rows, no number where one is complex."""
+        """What is taken of several terms over rows; nothing of no rows."""
         columns = zip(*(terms(row, *at) for row in rows), strict=True)
-        return [
-            mpmath.nan if any(isinstance(each, mpmath.mpc) for each in column) else _TAKEN[word](column)
-            for word, column in zip(words, columns, strict=False)
-        ]
+        return [_TAKEN[word](column) for word, column in zip(words, columns, strict=False)]
 
     def _numbers(self, numbers: list[Any]) -> Any:
         """What is read, row by row."""

@@ -88,11 +88,11 @@ def defined(expression: Any) -> Boolean:
     if not expression.args or expression.is_Atom or expression.is_Indexed:
         return sp.S.true
     if isinstance(expression, REDUCTIONS):
-        outside = _outside(defined(expression.function))
-        return sp.S.true if outside == 0 else sp.Eq(sp.Sum(outside, *expression.limits), 0)
+        lost = outside(defined(expression.function))
+        return sp.S.true if lost == 0 else sp.Eq(sp.Sum(lost, *expression.limits), 0)
     if isinstance(expression, OverRows):
-        outside = _outside(defined(expression.args[0]))
-        return sp.S.true if outside == 0 else sp.Eq(RowSum(outside, expression.args[1]), 0)
+        lost = outside(defined(expression.args[0]))
+        return sp.S.true if lost == 0 else sp.Eq(RowSum(lost, expression.args[1]), 0)
     if isinstance(expression, sp.Piecewise):
         chosen = [sp.Or(sp.Not(condition), defined(value)) for value, condition in expression.args]
         conditions = [condition for _, condition in expression.args]
@@ -134,8 +134,8 @@ def noticed(expression: Any) -> Boolean:
     return sp.And(*map(noticed if passing else defined, expression.args))
 
 
-def _outside(holds: Boolean) -> sp.Expr:
-    """1 where something does not hold."""
+def outside(holds: Boolean) -> sp.Expr:
+    """1 where something does not hold, else 0."""
     found: sp.Expr = sp.Piecewise((sp.Integer(0), holds), (sp.Integer(1), True))
     return found
 

@@ -6,14 +6,14 @@ from collections.abc import Collection, Iterable
 from itertools import chain, count
 from typing import Any
 
-from sympy import Expr, Indexed, Symbol, false
+from sympy import Eq, Expr, Indexed, Symbol, false
 from sympy.core.symbol import Str
 
 from ...derivations.rebuilt import in_absolute_values, rebuilt
 from ...derivations.reductions import REDUCTIONS, OrderStatistic, taken_of
 from ..named import name_of
 from ..sheet import Axis, Column, Formula, Given, Iterated, MemberAxis, Root, Sheet
-from .domain import defined, is_positive, noticed, positive, typed_symbols
+from .domain import defined, is_positive, noticed, outside, positive, typed_symbols
 from .nodes import GivenNode, Leaf, LoopNode, Map, Node, OverRows, Plan, RootNode, RowOrder, RowSum, Total
 from .special import SPECIAL, in_elementary_terms
 
@@ -165,8 +165,20 @@ class Lowering:
         asked, _ = self._assuming(plain)
         sign = positive(asked) if column.positive else false
         value = self._lifted(plain, column, None, nodes)
-        typed, cells = self._assuming(value, nodes)
-        return [*nodes, Map(column, value, requires, defined(asked), sign, noticed(typed).xreplace(cells))]
+        seen = self._noticed(value, column, nodes)
+        return [*nodes, Map(column, value, requires, defined(asked), sign, seen)]
+
+    def _noticed(self, value: Any, column: Column, nodes: list[Node]) -> Any:
+        """Where a formula, and each term of its totals, is no finite number in doubles if it has no value."""
+        totals = [each for each in nodes if isinstance(each, Total)]
+        typed, cells = self._assuming(value, totals)
+        found = noticed(typed).xreplace(cells)
+        for each in totals:
+            typed, cells = self._assuming(each.terms, totals)
+            lost = outside(noticed(typed)).xreplace(cells)
+            if lost != 0:
+                found &= Eq(self._lifted(RowSum(lost, Symbol(each.over.name)), column, None, nodes), 0)
+        return found
 
     def step(self, column: Column, expression: Expr) -> list[Node]:
         """The nodes of the next value of an iterated column: where it has none, the whole loop has failed."""
@@ -233,6 +245,6 @@ class Lowering:
             symbol = self.symbol(
                 Leaf("total", f"{column.name}.{number}", rows), _REAL, f"{column.name}_{word}_{number}"
             )
-            total = Total(column, symbol, over, terms, self._written[expression], word)
+            total = Total(column, symbol, over, terms, self._written.get(expression, terms), word)
             nodes.append(total)
         return total.symbol
