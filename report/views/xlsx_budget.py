@@ -381,7 +381,7 @@ class _Written:
         # Sources that do nothing after an edit may do something to second order.
         stated = f"$D${self.first + 1}:$D${self.last + 1}"
         gains = any(self.width(each.source) is None for each in self.lines)  # their column says nothing
-        known = f"IF(AND({root}=0,{'TRUE' if gains else f'SUMSQ({stated})>0'}),NA(),{root})"
+        known = f"IFERROR(IF(AND({root}=0,{'TRUE' if gains else f'SUMSQ({stated})>0'}),NA(),{root}),NA())"
         sure, form = self.form(budget.u), self.form(budget.expanded)
         lines: tuple[tuple[str, str, float, str], ...] = (
             ("value", f"={cell}", value, shown),

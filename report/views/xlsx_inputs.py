@@ -250,7 +250,8 @@ class GivenCells:
         rows = numbers.place.range(place.worksheet)
         of_rows = [number for number in numbers.values if isinstance(number, float)]
         where = [as_issued(power, of_rows, rows) for power in (1, 2)]
-        return f"AND({','.join(same)},NOT(AND({','.join(where)})))"
+        # Where a number is so large that its cube is none, it is not one that was issued.
+        return f"IFERROR(AND({','.join(same)},NOT(AND({','.join(where)}))),FALSE)"
 
     def summary(self) -> str:
         """The formula that tells on the first worksheet whether anything given is refused."""

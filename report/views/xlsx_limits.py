@@ -31,6 +31,11 @@ def as_issued(cell: str, at: float, value: float) -> str:
     return f"IF(ABS({cell}-({at:.15f}))<0.000001,{value:.15f},NA())" if math.isfinite(at) else "0"
 
 
+def _known(formula: str) -> str:
+    """What has no value is not decided: the code that stands for it says why."""
+    return f"IF(ISNUMBER({{value}}),{formula},{{value}})"
+
+
 class _Written:
     """The lines of one rule; each may name those above it, and those of the budget."""
 
@@ -112,15 +117,16 @@ def write_limits(
     to.end("to high", "upper acceptance limit", "{high}-{guard}", place.of(most), form)
     to.line("shape", "distribution", formulas[1], by.shape.value)
     z = (budget.value - low) / budget.u, (high - budget.value) / budget.u
-    to.end("z low", "lower margin over u", "({value}-{low})/{u}", z[0], "0.00")
-    to.end("z high", "upper margin over u", "({high}-{value})/{u}", z[1], "0.00")
+    to.end("z low", "lower margin over u", _known("({value}-{low})/{u}"), z[0], "0.00")
+    to.end("z high", "upper margin over u", _known("({high}-{value})/{u}"), z[1], "0.00")
     for name, said, now in (("low", "below", found.below), ("high", "above", found.above)):
         end = f"{{z {name}}}"
         tail = to.tail(end)
         if by.law is not None:  # of sources that were edited it is another one
             known = as_issued(end, z[name == "high"], now)
             tail = f'IF({{shape}}="{by.shape}",{known},NA())'
-        to.line(said, f"probability that it lies {said}", f"IF(ISTEXT({end}),0,{tail})", now, CHANCE)
+        tail = _known(f"IF(ISTEXT({end}),0,{tail})")
+        to.line(said, f"probability that it lies {said}", tail, now, CHANCE)
     inside = (
         "1-({below}+{above})"
         if by.law
@@ -130,7 +136,7 @@ def write_limits(
         )
     )
     crossed = "AND(ISNUMBER({low}),ISNUMBER({high}),N({low})>N({high}))"
-    inside = f"IF({crossed},NA(),{inside})"
+    inside = _known(f"IF({crossed},NA(),{inside})")
     to.line("inside", "conformance probability", inside, found.probability, CHANCE)
     if by.law:
         said = "the probabilities do not follow an edit: #N/A where value or limits are not as issued"
@@ -142,7 +148,7 @@ def write_limits(
         f"IF(ISNUMBER({{high}}),({{to high}}-{{value}})/{{u}}>=-{ROUNDING},TRUE))"
     )
     outside = f"OR(N({{z low}})<-{ROUNDING},N({{z high}})<-{ROUNDING})"
-    decided = f"IF({crossed},NA(),IF({outside},{no},IF({accepted},{yes},{open_})))"
+    decided = _known(f"IF({crossed},NA(),IF({outside},{no},IF({accepted},{yes},{open_})))")
     to.line("decision", "decision", decided, found.decision.value)
     for name, when, taken, risk in (
         ("consumer", yes, "{below}+{above}", found.consumer_risk),

@@ -520,3 +520,37 @@ def test_what_second_order_adds_counts_where_less_is_left_of_the_first(
         assert found[what, "B"] == pytest.approx(rebuilt[what, "B"], rel=1e-9)
     assert (issued["decision", "B"], found["decision", "B"]) == ("does not conform", "no decision")
     assert rebuilt["decision", "B"] == found["decision", "B"]
+
+
+SCATTER = """
+from loopsheet import Method, let, measured, stdev
+
+class Scatter(Method, headline="s"):
+    "Scatter of readings."
+    x = measured("mm", "reading")
+    y = let(2 * x, "twice")
+    s = let(stdev(x), "scatter")
+"""
+
+
+def test_what_has_no_value_is_not_decided_and_says_why(
+    recalculate: spreadsheets.Recalculate, tmp_path: Path
+) -> None:
+    """An emptied reading, three that are made equal, and one whose cube no double holds."""
+    files = {
+        "workbook.py": SCATTER,
+        "m.csv": "reading,x [mm]\n1,1.2\n2,1.3\n3,1.1\n",
+        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
+        'x = "u = 0.01 mm"\n[limits]\ny = ">= 1 mm"\ns = "<= 0.2 mm"\n',
+    }
+    made = Office.made(tmp_path / "made", files)
+    edits: dict[str, spreadsheets.Edits] = {
+        "empty": {("x", 1): None}, "equal": {("x", row): 1.2 for row in range(3)}, "huge": {("x", 1): 1e300},
+    }  # fmt: skip
+    read = recalculate({name: made.edited(edit) for name, edit in edits.items()})
+    said = "standard uncertainty u", "conformance probability", "decision"
+    found = budgets(read["empty"]["uncertainty"])["y[2]"]
+    assert {found[each, "B"] for each in said} == {"#INPUT!"}
+    found = budgets(read["equal"]["uncertainty"])["s"]
+    assert [found[each, "B"] for each in said[::2]] == ["#N/A", "#N/A"]
+    assert read["huge"]["report"].get("A3", "") == ""
