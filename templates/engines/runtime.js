@@ -56,16 +56,15 @@ function layOut(axis, layouts, labels, data) {
 }
 
 // Sums of several terms over the rows that are kept. Of a few rows `terms` adds them as they come, then every
-// addition is compensated (Neumaier): no engine may lose digits to the order of its additions. Infinite is no number,
-// so that a formula which divides by it is none.
+// addition is compensated (Neumaier, with Knuth's sum of two): no engine may lose digits to the order of its
+// additions. Infinite is no number, so that a formula which divides by it is none.
 function total(kept, count, terms, first = 0, end = kept.length) {
   const sum = new Float64Array(count), lost = new Float64Array(count);
   for (let row = first; row < end; row += BLOCK) {
     const part = terms(row, Math.min(row + BLOCK, end), kept);
     for (let n = 0; n < count; n++) {
-      const term = part[n], before = sum[n], after = before + term;
-      lost[n] += Math.abs(before) >= Math.abs(term) ? before - after + term : term - after + before;
-      sum[n] = after;
+      const term = part[n], before = sum[n], added = (sum[n] += term) - before;
+      lost[n] += before - (sum[n] - added) + (term - added);
     }
   }
   return sum.map((all, n) => all + lost[n]);
@@ -131,7 +130,7 @@ function bisect(root, row, left, right, rising) {
 function evaluateSheet(program, labels, inputs) {
   const data = { ...program.constants, ...inputs };
   for (const { name, allows } of program.columns) {
-    if (allows) data[name] = data[name].map((x) => (Number.isFinite(x) && allows(x) ? x : NaN));
+    if (allows) data[name] = data[name].map((x) => (isFinite(x) && allows(x) ? x : NaN));
   }
   const sheet = { layouts: {}, value: {}, status: {}, roots: {}, counted: {}, broken: {}, kept: {} };
   const { layouts, value, status } = sheet, faulty = {};
@@ -206,7 +205,7 @@ function fill(out, codes, compute, positive, fault) {
   let faulty = false;
   for (let row = 0; row < out.length; row++) {
     const number = codes[row] ? NaN : compute(row);
-    if (Number.isFinite(number) && (number >= SMALLEST || !positive)) out[row] = number;
+    if (isFinite(number) && (number >= SMALLEST || !positive)) out[row] = number;
     else {
       out[row] = NaN;
       codes[row] ||= fault(row, number);
