@@ -15,10 +15,11 @@ from typing import Any
 import engine_cases
 import mpmath
 import pytest
+from helpers import method_folder
 
 from loopsheet.report import stages
 from loopsheet.report.cells.grid import Place, checked
-from loopsheet.report.cells.values import Values
+from loopsheet.report.cells.values import Status, Values
 from loopsheet.report.engines import ENGINES, exact, excel_grid
 from loopsheet.report.engines import numpy as engine
 from loopsheet.report.inputs.folders import PAPER
@@ -109,6 +110,40 @@ def test_a_wrong_value_and_a_wrong_status_are_named(
     assert agreement.findings[1] == f"F[1-2-8]: {engine} says #DOMAIN!, 50 digits say ok"
     assert agreement.units == pytest.approx(100, abs=1)
     assert agreement.units_where == "alpha[1-5]"
+
+
+EXACTLY = """
+from loopsheet import Method, fit, let, measured, unknown
+
+class Line(Method):
+    "A line."
+    x = measured("mm", "place")
+    y = measured("N", "force")
+    a = unknown("intercept")
+    b = unknown("slope")
+    line = fit(y, a + b * x)
+    scaled = let(line.residual / line.s, "residual in scatters")
+    last = let(max(scaled), "the largest")
+"""
+
+
+def test_an_engine_follows_its_own_rounding(tmp_path: Path) -> None:
+    """Of points on a line the residuals in scatters are 0/0, of doubles next to it they are something."""
+    rows = "reading,x [mm],y [N]\n1,0,1\n2,1,2\n3,2,3\n"
+    prepared = Study(method_folder(tmp_path, EXACTLY, rows)).prepared
+    values = engine.evaluate(prepared.sheet, prepared.labels, prepared.data)
+    exactly = exact.evaluate(prepared.sheet, prepared.labels, prepared.exact_data)
+    assert set(exactly.status["scaled"]) == {Status.DOMAIN}
+    assert not values.status["scaled"].any()
+    data = prepared.labels, prepared.exact_data
+    judge = engines.Judge.of(prepared.sheet, values.layouts, *data)
+    found = readers.of_values(values)
+    assert not judge.agreement(found).findings
+    # What does not follow from it is a fault.
+    status = {**found.status, "scaled": ["ok", "#OVERFLOW!", "ok"]}
+    (told,) = judge.agreement(replace(found, status=status)).findings
+    assert told == "scaled[2]: numpy says #OVERFLOW!, 50 digits say #DOMAIN!"
+    assert judge.agreement(replace(found, status={**found.status, "a": ["#NOROOT!"]})).findings
 
 
 @pytest.mark.parametrize(("units", "believed"), [(7.8, True), (8.2, False)])

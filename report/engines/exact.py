@@ -215,6 +215,31 @@ def _texts(sheet: Sheet) -> Mapping[str, Any]:
     return found
 
 
+def follows(
+    column: Column,
+    sheet: Sheet,
+    layouts: Mapping[str, Layout],
+    value: Mapping[str, Sequence[float | Fraction | None]],
+    status: Mapping[str, Sequence[Status]],
+) -> list[Status]:
+    """What the cells of a column are at 50 digits if all that it names is what another engine has made of it.
+
+    Parameters
+    ----------
+    column : Column
+        Not given, and in no loop.
+    value, status : mapping of column name to sequence
+        Of all columns; in SI, None where there is no number.
+    """
+    with _real(DIGITS + _GUARD):
+        engine = _Exact(sheet, layouts, {})
+        engine.value = {
+            name: [None if each is None else as_mpf(each) for each in own] for name, own in value.items()
+        }
+        engine.status = {name: np.array(own, dtype=np.uint8) for name, own in status.items()}
+        return [Status(code) for code in engine._column(column)[1].tolist()]
+
+
 class _Exact:
     """One evaluation at 50 digits."""
 

@@ -20,7 +20,7 @@ from ..cells.values import CODES, Cell, Status, Values
 from ..engines import ENGINES, exact
 from ..quantity import SMALLEST
 from ..result.agreement import LIMIT, Agreement
-from ..sheet import Column, Sheet
+from ..sheet import Column, Formula, Root, Sheet
 from .bounds import RoundingBounds
 from .readers import Case, Reading
 
@@ -28,6 +28,8 @@ EPS = float(np.finfo(float).eps)
 
 UNSETTLED = "#STEPS!"
 """What only a workbook says: its steps to a root are columns and come to an end, others go on."""
+
+_STATUS = {code: status for status, code in CODES.items()}
 
 MOST_FINDINGS = 20
 """How many cells of an engine are named; the rest are counted."""
@@ -112,16 +114,30 @@ class Judge:
         if not len(numbers) == len(codes) == len(exactly):
             tally.findings.append(f"{name}: {reading.engine} has {len(numbers)} rows, not {len(exactly)}")
             return
+        followed = self._followed(column, reading)
         for row, (true, status) in enumerate(zip(exactly, self.judged.status[name], strict=True)):
             place, number = self.addresses[name][row], numbers[row]
             tally.cells += 1
             if codes[row] != CODES[status]:
-                tally.differs(place, codes[row], CODES[status])
+                if followed and codes[row] == CODES[followed[row]]:
+                    tally.unbounded += 1  # rounding before it decides whether it has a value: 0/0
+                else:
+                    tally.differs(place, codes[row], CODES[status])
             elif true is not None and number is not None:
                 # Of what a file has cut, nothing is the engine's fault.
                 lost = exact.as_mpf(reading.rounded[name][row]) if name in reading.rounded else 0
                 difference = max(abs(exact.as_mpf(number) - true) - lost, 0)
                 tally.add(place, difference, self.bounds.allowing(name, row, float(difference)), scale)
+
+    def _followed(self, column: Column, reading: Reading) -> Sequence[Status]:
+        """What 50 digits make of the engine's own numbers, where it has a cell that has another status."""
+        codes, name = reading.status, column.name
+        exactly = [CODES[each] for each in self.judged.status[name]]
+        by_rule = isinstance(column.rule, (Formula, Root)) and name not in self.sheet.loop_of
+        if list(codes[name]) == exactly or not by_rule:
+            return ()
+        status = {each: [_STATUS.get(code, Status.NOROOT) for code in own] for each, own in codes.items()}
+        return exact.follows(column, self.sheet, self.judged.layouts, reading.value, status)
 
 
 @dataclass
