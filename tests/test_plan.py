@@ -219,3 +219,9 @@ def test_conditions_are_written_as_people_do(capsys: pytest.CaptureFixture[str])
     assert main(["show", "line_s", str(PAPER.parent / "gum_h3"), "--plan"]) == 0
     condition = "1/(n_of_line_s - 2) >= 0 and sum(line_residual**2, readings) >= 0 and n_of_line_s - 2 != 0"
     assert f"    defined: {condition}\n" in capsys.readouterr().out
+
+
+def test_a_condition_that_doubles_would_lose_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """2 s_1/s_3 at s_3 = 0, of which the greatest of several may be another."""
+    assert main(["show", "alpha_0", "paper", "--plan"]) == 0
+    assert "    finite only if: alpha_0_sum_3 != 0\n" in capsys.readouterr().out

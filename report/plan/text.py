@@ -78,7 +78,7 @@ def _node(plan: Plan, node: Node) -> Iterator[str]:
         if str(node.defined) != "True":
             yield f"    defined: {_plain(node.defined)}"
         if str(node.noticed) != "True":
-            yield f"    no number in doubles but: {_plain(node.noticed)}"
+            yield f"    finite only if: {_plain(node.noticed)}"
         if str(node.positive) not in ("True", "False"):
             yield f"    positive: {_plain(node.positive)}"
     else:
