@@ -27,7 +27,7 @@ from ..cells.values import Status, Values, how_many, inherited, rows_kept
 from ..plan.kept import of_sheet
 from ..plan.order import Word
 from ..quantity import LARGEST, SMALLEST, Bounds
-from ..sheet import Column, Given, Loop, Sheet
+from ..sheet import Column, Formula, Given, Loop, Sheet
 from .exact_roots import Enclose, brackets, of_arrays, of_mpmath
 from .intervals import Intervals
 from .isolation import Doubtful
@@ -100,10 +100,9 @@ class _Failed(Exception):
 
 @contextmanager
 def _real(digits: int) -> Iterator[None]:
-    """Works with so many digits; what is no real number is none, and is not taken for its absolute value."""
+    """Works with so many digits; whether what is no real number is refused is left as it was."""
     before = mpmath.mp.trap_complex
     with mpmath.workdps(digits):
-        mpmath.mp.trap_complex = True
         try:
             yield
         finally:
@@ -145,7 +144,7 @@ def as_mpf(value: float | Fraction) -> Any:
 def _held(value: Any, positive: bool) -> Any:
     """A value that a double can hold, be it rounded; a formula without cells may be a plain number."""
     value = mpmath.mpmathify(value)
-    if not mpmath.isfinite(value) or (positive and not value > 0):
+    if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value) or (positive and not value > 0):
         raise _Failed(Status.DOMAIN)
     if -1000 < mpmath.mag(value) < 1000:
         return value  # its size is known without comparing it with numbers of a thousand bits
@@ -340,6 +339,9 @@ class _Exact:
         if some:
             self.counted[column.name] = some
         scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
+        # An end of a root may be infinite, and a step of a fit too long; a formula has a value or none.
+        is_strict = isinstance(column.rule, Formula) and column.name not in self.sheet.loop_of
+        scope.module = _OF_REALS if is_strict else mpmath
         texts = self.texts[column.name]
         conditions = [scope.function(condition) for condition in texts["requires"]]
         body = scope.function(texts[what]) if "form" not in texts else self._root(texts, column, scope)
@@ -349,6 +351,7 @@ class _Exact:
             self.broken[column.name] = broken
 
         def compute(row: int) -> Any:
+            mpmath.mp.trap_complex = is_strict  # else the size of what is no real number would be one
             for number, condition in enumerate(conditions, start=1):
                 if not condition(row):
                     broken[row] = number
@@ -385,7 +388,7 @@ class _Exact:
             points, right = [low(row)], high(row)
             for point in turning:
                 place = point(row)
-                if points[-1] < place < right:
+                if not isinstance(place, mpmath.mpc) and points[-1] < place < right:
                     points.append(place)
             points.append(right)
             inner = [form(row, point) for point in points[1:-1]]
@@ -484,7 +487,7 @@ class _Scope:
     `kept` (mapping of axis name to list of int): the rows that sums over an axis run over.
     """
 
-    module: ModuleType = _OF_REALS
+    module: ModuleType = mpmath
 
     def __init__(self, engine: _Exact, column: Column, kept: Mapping[str, list[int]]) -> None:
         self.engine, self.column, self.kept = engine, column, kept
@@ -573,9 +576,12 @@ class _Scope:
     def _taken(
         self, words: Sequence[Word], terms: Callable[..., Any], rows: Sequence[int], at: Sequence[Any]
     ) -> list[Any]:
-        """What is taken of several terms over rows; nothing of no rows."""
+        """What is taken of several terms over rows; nothing of no rows, no number where one is complex."""
         columns = zip(*(terms(row, *at) for row in rows), strict=True)
-        return [_TAKEN[word](column) for word, column in zip(words, columns, strict=False)]
+        return [
+            mpmath.nan if any(isinstance(each, mpmath.mpc) for each in column) else _TAKEN[word](column)
+            for word, column in zip(words, columns, strict=False)
+        ]
 
     def _numbers(self, numbers: list[Any]) -> Any:
         """What is read, row by row."""
