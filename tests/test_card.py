@@ -142,6 +142,15 @@ def test_a_radius_with_which_no_stiffness_stops_the_bodies(radius: float) -> Non
         card(CODES["lammps"], STEEL, STEEL.middle, "x", Bodies(None, 0.3, radius))
 
 
+def test_no_code_is_told_to_take_what_it_refuses() -> None:
+    """LIGGGHTS takes no restitution of 0.05; LAMMPS goes on until nothing swings."""
+    hard = replace(STEEL, e=(0.18,) * 5)
+    with pytest.raises(Unreachable, match=r"returns from 0\.21"):
+        of(CODES["liggghts"], hard)
+    made = of(CODES["lammps"], replace(STEEL, e=(0.145,) * 5))
+    assert made.returned.e == pytest.approx(0.145, abs=1e-9)
+
+
 def test_a_formula_that_loses_nothing_is_unreachable() -> None:
     code = CODES["drake"]
     lossless = replace(code, law=ForceLaw("a spring", code.stiffness * x), damping_ends=(1e-3, 1e-2))
@@ -439,6 +448,18 @@ def test_tests_that_are_not_in_a_card_are_named(
     told = capsys.readouterr().out
     assert "left out: test 1, bounced twice" in told
     assert "test 3 is left out here: e = 1, nothing is lost" in told
+
+
+def test_tests_at_one_speed_are_told_to_be_taken_together(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = changed(tmp_path / "own", (("2,2.940,0.512", "2,2.334,0.512"),))
+    main(["card", folder, "--for", "mujoco"])
+    told = capsys.readouterr().out
+    assert "test 1 and test 2 are at one speed, 2.334 m/s: restitution and imprint are their means" in told
+    assert re.search(r"^2\.334 +0\.5210 ", told, re.MULTILINE)
+    main(["card", "paper", "--for", "mujoco"])
+    assert "at one speed" not in capsys.readouterr().out
 
 
 def test_a_card_tells_which_curve_it_took(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -185,7 +185,7 @@ def test_two_tests_tell_no_curve_without_one_of_them(tmp_path: Path) -> None:
     cell = report.values.cell("rms_x_p_power")
     assert cell.reason == (
         "#DOMAIN! rms_x_p_power needs x_p_power_without[1]: outside the domain of (L163): "
-        "needs three tests: the others alone tell no curve"
+        "the others alone tell no curve: it takes three tests, none with all the weight"
     )
     assert [found for engine in report.engines for found in engine.findings] == []
     assert [check.message for check in report.oddities if not check.passed] == [

@@ -52,6 +52,7 @@ with evaluate(False):
         "a test that is left out lies this much farther off, along the tangents of the fit",
     )
 
+_ALONE = "the others alone tell no curve: it takes three tests, none with all the weight"
 _one = {paper.x_m: x_m, paper.Cprime: peak}
 approach = paper.x_m_of_test.at(_one)
 greatest = paper.eq9.reversed.at(_one)
@@ -66,7 +67,7 @@ POWER_LAW = ContactModel(
     constants=2,
     left_out={x_p: WITHOUT.symbol},
     needs={
-        WITHOUT.symbol: (1 - H.symbol > FREE, "needs three tests: the others alone tell no curve"),
+        WITHOUT.symbol: (1 - H.symbol > FREE, _ALONE),
         x_p: (
             e**2 < (paper.alpha + 1) / (beta + 1),
             "e^2 is not below (alpha + 1)/(beta + 1): the recovery is the whole approach",

@@ -179,6 +179,7 @@ LAMMPS = SimulationCode(
     ),
     stiffness=E,
     damping=e,
+    damping_ends=(1e-9, 1 - 1e-6),
     by_hertz=E,
     snippet="pair_coeff * * hertz/material {E} {e} {nu} tangential ... damping coeff_restitution "
     "limit_damping",
@@ -205,9 +206,11 @@ LIGGGHTS = SimulationCode(
     ),
     stiffness=E,
     damping=e,
+    damping_ends=(0.05 + 1e-6, 1 - 1e-6),  # createCoeffRest takes no 0.05
     by_hertz=E,
     snippet="pair_style gran model hertz limitForce on",
     notes=(
+        "a modulus below 5e6 Pa is refused",
         "hard_particles yes before the properties: without it a modulus above 1e9 Pa is refused",
         "with limitForce off, the default, the force pulls at the end and the typed restitution is returned",
     ),

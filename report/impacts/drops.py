@@ -68,6 +68,13 @@ class Drops:
         return tuple((row, why) for row, why in found if why)
 
     @property
+    def averaged(self) -> tuple[tuple[int, ...], ...]:
+        """The rows, from 0, of the tests at one speed: those of each speed that several have."""
+        rows = [row for row, why in enumerate(map(_lacks, self.v, self.e)) if not why]
+        alike = (tuple(row for row in rows if self.v[row] == test.speed) for test in self.tests)
+        return tuple(each for each in alike if len(each) > 1)
+
+    @property
     def middle(self) -> Drop:
         """The test in the middle of the speeds: the slower of two."""
         return self.tests[(len(self.tests) - 1) // 2]
