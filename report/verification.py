@@ -92,6 +92,7 @@ def verify(
             *_same("input", then.inputs, now.inputs, "the input", folder),
             *_same("source", then.sources, now.sources, "the"),
             *_same("library", then.software, now.software, ""),
+            *_statements(then, now),
             *_outputs(out, then, now, rounded),
             *(Check("output", name, False, f"{name} {_NOT_OF_CRATE}") for name in altered(out)),
             *_moves(differences),
@@ -135,6 +136,14 @@ def _same(
         else:
             ends = _ENDS if folder and _ends_alone(folder / name, was) else ""
             yield Check(kind, name, False, f"{said} was changed{ends}")
+
+
+def _statements(then: Manifest, now: Manifest) -> Iterator[Check]:
+    """A check for what a manifest says of the report otherwise than one that is built again."""
+    for name, was, is_now in (("title", then.title, now.title), ("values", then.values, now.values)):
+        if was and was != is_now:
+            said = f"of its {name} the manifest says '{was}', and '{is_now}' when it is built again"
+            yield Check("manifest", name, False, said)
 
 
 def _outputs(out: Path, then: Manifest, now: Manifest, rounded: str) -> Iterator[Check]:

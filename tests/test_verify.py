@@ -135,6 +135,19 @@ def test_an_output_that_was_changed_by_hand(campaign: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize(("name", "says"), [("title", "Harder steel"), ("values", "as doubles")])
+def test_what_a_manifest_says_of_the_report_is_compared(name: str, says: str, campaign: Path) -> None:
+    manifest = campaign / "out" / "manifest.json"
+    data = json.loads(manifest.read_text())
+    was = data[name]
+    manifest.write_text(json.dumps({**data, name: says}))
+    found = verify(campaign / "out", campaign)
+    assert failed(found) == {"manifest": [name]}
+    (told,) = (check.message for check in found.checks if not check.passed)
+    assert told == f"of its {name} the manifest says '{says}', and '{was}' when it is built again"
+    assert found.verdict.startswith("different")
+
+
 def test_an_output_that_is_no_result_any_more(campaign: Path) -> None:
     (campaign / "out" / "values.json").write_text("{")
     found = verify(campaign / "out", campaign)

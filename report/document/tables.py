@@ -233,7 +233,7 @@ class Tables:
 
     def _limits(self, heads: Iterable[Head]) -> Inlines:
         told = self.material.limits(heads)
-        return (*joined(map(self.rich, told), "; "), ".") if told else ()
+        return (*joined(map(self.rich, told), "; or "), ".") if told else ()
 
     # --- what is known of the uncertainty
 

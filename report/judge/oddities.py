@@ -21,7 +21,7 @@ from ..messages.diagnostics import Check, Location
 from ..messages.errors import listing
 from ..quantity import behind
 from ..result.chi_square import RARE, asked_of_chance, freedom, head, tail, tied, ties
-from ..result.numbers import probability, rounded
+from ..result.numbers import degrees_of_freedom, probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
 from . import mixed_rows, readings, taken
@@ -373,7 +373,7 @@ class _Oddities:
             said = f"{name}: errors are shared or correlated, and its weights leave that out"
             return Check(SQUARES, name, True, said, self.inputs.place, skipped=True)
         found = f", {rounded(known[0], 2).plain} with what errors have in common," * together
-        found = f"{name} = {self.report.text(cell)}{found} on {known[1]} degrees of freedom"
+        found = f"{name} = {self.report.text(cell)}{found} on {degrees_of_freedom(known[1])}"
         found += f" by a u with {known[2]:.0f}" * math.isfinite(known[2])
         large, small = tail(*known), head(*known)
         # What is left without some rows is a sum by the weights of the fit.

@@ -221,6 +221,11 @@ def chance(probability: float, other: float, places: int = 2) -> str:
     return f"{decimals(100 * probability, places).text} %"
 
 
+def degrees_of_freedom(number: int) -> str:
+    """How many there are, in words: ``1 degree of freedom``."""
+    return f"{number} degree{'s' * (number != 1)} of freedom"
+
+
 def probability(p: float) -> str:
     """A probability with one digit, or with one of what is missing to 1; of tiny ones that they are.
 

@@ -9,7 +9,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from ..distribution import Shape
-from .numbers import rounded
+from .numbers import degrees_of_freedom, rounded
 
 if TYPE_CHECKING:
     import numpy as np
@@ -370,7 +370,7 @@ class Misfit:
     @property
     def said(self) -> str:
         """What they come to, in words."""
-        return f"chi2 = {rounded(self.chi2, 3).plain} on {self.dof} degrees of freedom"
+        return f"chi2 = {rounded(self.chi2, 3).plain} on {degrees_of_freedom(self.dof)}"
 
 
 @dataclass(frozen=True)
