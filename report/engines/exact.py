@@ -99,14 +99,14 @@ class _Failed(Exception):
 
 
 @contextmanager
-def _real(digits: int) -> Iterator[None]:
-    """Works with so many digits; whether what is no real number is refused is left as it was."""
+def _real(strict: bool) -> Iterator[None]:
+    """Refuses what is no real number: its absolute value would be one."""
     before = mpmath.mp.trap_complex
-    with mpmath.workdps(digits):
-        try:
-            yield
-        finally:
-            mpmath.mp.trap_complex = before
+    mpmath.mp.trap_complex = strict
+    try:
+        yield
+    finally:
+        mpmath.mp.trap_complex = before
 
 
 def _log(x: Any) -> Any:
@@ -165,7 +165,7 @@ def evaluate(sheet: Sheet, labels: Mapping[str, Sequence[int]], data: Mapping[st
     layouts = laid_out(sheet, labels, data)
 
     def run(digits: int, zeros: Set[tuple[str, int]] = frozenset()) -> ExactValues:
-        with _real(digits):
+        with mpmath.workdps(digits):
             given = {
                 name: [_datum(x, sheet.bounds[name]) for x in _rows(data[name])] for name in sheet.bounds
             }
@@ -230,7 +230,7 @@ def follows(
     value, status : mapping of column name to sequence
         Of all columns; in SI, None where there is no number.
     """
-    with _real(DIGITS + _GUARD):
+    with mpmath.workdps(DIGITS + _GUARD):
         engine = _Exact(sheet, layouts, {})
         engine.value = {
             name: [None if each is None else as_mpf(each) for each in own] for name, own in value.items()
@@ -351,12 +351,12 @@ class _Exact:
             self.broken[column.name] = broken
 
         def compute(row: int) -> Any:
-            mpmath.mp.trap_complex = is_strict  # else the size of what is no real number would be one
             for number, condition in enumerate(conditions, start=1):
                 if not condition(row):
                     broken[row] = number
                     raise _Failed(Status.DOMAIN)
-            exactly = body(row)
+            with _real(is_strict):
+                exactly = body(row)
             return _held(mpmath.mpf(0) if (column.name, row) in self.zeros else exactly, column.positive)
 
         return status, compute
