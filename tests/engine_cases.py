@@ -174,6 +174,8 @@ without = case("without_the_least", 1 / (a[k] - 2), ROWS, [DOMAIN, 1, Rational(1
 case("a_least_alongside", Least(a[k], (k, 1, n)), None, [3], alongside=(without,))
 needs = ((a[j] < a[i] + 5, "not far"), (a[i] > 2, "not small"))
 case("conditions", 2 * gap[p], PAIRS, [DOMAIN, DOMAIN, 8], requires=needs)
+large = ((log(a[k] - 2) > -1, "large"),)
+case("a_condition_on_minus_infinity", 2 * a[k], ROWS, [DOMAIN, 6, 14], requires=large)
 
 # --- rows that are counted, whatever the data -------------------------------------------------------------
 

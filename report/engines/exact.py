@@ -339,11 +339,11 @@ class _Exact:
         if some:
             self.counted[column.name] = some
         scope = _Scope(self, column, {axis: np.flatnonzero(mask).tolist() for axis, mask in kept.items()})
+        texts = self.texts[column.name]
+        conditions = [scope.function(condition) for condition in texts["requires"]]
         # An end of a root may be infinite, and a step of a fit too long; a formula has a value or none.
         is_strict = isinstance(column.rule, Formula) and column.name not in self.sheet.loop_of
         scope.module = _OF_REALS if is_strict else mpmath
-        texts = self.texts[column.name]
-        conditions = [scope.function(condition) for condition in texts["requires"]]
         body = scope.function(texts[what]) if "form" not in texts else self._root(texts, column, scope)
 
         broken = np.zeros(size, dtype=np.uint8)
