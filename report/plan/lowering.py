@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from itertools import chain, count
 from typing import Any
 
-from sympy import Eq, Expr, Indexed, Symbol, false
+from sympy import Eq, Expr, Indexed, Symbol, false, true
 from sympy.core.symbol import Str
 
 from ...derivations.rebuilt import in_absolute_values, rebuilt
@@ -162,20 +162,29 @@ class Lowering:
         nodes = list[Node]()
         requires = tuple(self._lower(condition, column, nodes) for condition, _ in column.requires)
         plain = self.plain(expression, column, column.axis)
-        asked, _ = self._assuming(plain)
+        asked = self._assuming(plain)
         sign = positive(asked) if column.positive else false
         value = self._lifted(plain, column, None, nodes)
-        seen = self._noticed(value, column, nodes)
-        return [*nodes, Map(column, value, requires, defined(asked), sign, seen)]
+        known = defined(asked)
+        seen = true if known == true else self._noticed(value, column, nodes)
+        return [*nodes, Map(column, value, requires, known, sign, seen)]
 
     def _noticed(self, value: Any, column: Column, nodes: list[Node]) -> Any:
         """Where a formula, and each term of its totals, is no finite number in doubles if it has no value."""
         totals = [each for each in nodes if isinstance(each, Total)]
-        typed, cells = self._assuming(value, totals)
-        found = noticed(typed).xreplace(cells)
+        above_0 = {
+            each.symbol: Symbol(each.symbol.name, positive=True)
+            for each in totals
+            if is_positive(self._assuming(each.terms))
+        }
+
+        def seen(expression: Any) -> Any:
+            typed = above_0 | self._typed(expression)
+            return noticed(expression.xreplace(typed)).xreplace({new: own for own, new in typed.items()})
+
+        found = seen(value)
         for each in totals:
-            typed, cells = self._assuming(each.terms, totals)
-            lost = outside(noticed(typed)).xreplace(cells)
+            lost = outside(seen(each.terms))
             if lost != 0:
                 found &= Eq(self._lifted(RowSum(lost, Symbol(each.over.name)), column, None, nodes), 0)
         return found
@@ -206,7 +215,7 @@ class Lowering:
             in_absolute_values(lower(rule.expression), rule.unknown),
             lower(rule.value),
             requires,
-            is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))[0]),
+            is_positive(self._assuming(self.plain(rule.value, column, column.axis, rule.unknown))),
             rule.steps,
         )
         return [*nodes, node]
@@ -216,15 +225,13 @@ class Lowering:
     ) -> Any:
         return self._lifted(self.plain(expression, column, column.axis, unknown), column, unknown, nodes)
 
-    def _assuming(self, plain: Any, nodes: Iterable[Node] = ()) -> tuple[Any, dict[Symbol, Symbol]]:
-        """The expression in symbols that say what cells and totals may be, and of which each of these is."""
+    def _assuming(self, plain: Any) -> Any:
+        return plain.xreplace(self._typed(plain))
+
+    def _typed(self, plain: Any) -> dict[Symbol, Symbol]:
+        """For the cells of an expression, symbols of which is assumed what they may be."""
         named = {symbol: self.leaves[symbol] for symbol in plain.free_symbols if symbol in self.leaves}
-        assuming = typed_symbols(self.sheet, named) | {
-            each.symbol: Symbol(each.symbol.name, positive=True)
-            for each in nodes
-            if isinstance(each, Total) and is_positive(self._assuming(each.terms)[0])
-        }
-        return plain.xreplace(assuming), {typed: symbol for symbol, typed in assuming.items()}
+        return typed_symbols(self.sheet, named)
 
     def _lifted(self, expression: Any, column: Column, unknown: Symbol | None, nodes: list[Node]) -> Any:
         """The expression with symbols for what it takes over rows, which become nodes; not for what moves."""
