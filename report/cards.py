@@ -138,12 +138,14 @@ def curve(report: Report) -> tuple[str, float, float]:
 def taken(report: Report, drops: Drops) -> tuple[str, ...]:
     """Which tests are in no card, which are taken together, and which curve is, if not the best."""
     table = report.inputs.only
-    found = [
-        f"{table.row} {table.called(table.tests[row])} is left out here: {why}" for row, why in drops.aside
-    ]
+
+    def called(row: int) -> str:
+        return f"{table.row} {table.called(table.tests[row])}"
+
+    found = [f"{called(row)} is left out here: {why}" for row, why in drops.aside]
     found += [
-        listing([f"{table.row} {table.called(table.tests[row])}" for row in rows], last="and")
-        + f" are at one speed, {drops.v[rows[0]]:g} m/s: restitution and imprint are their means"
+        f"{listing(map(called, rows), last='and')} are at one speed, {drops.v[rows[0]]:g} m/s: "
+        "restitution and imprint are their means"
         for rows in drops.averaged
     ]
     better = [name for name, _ in _CURVES if name in report.sheet]

@@ -70,7 +70,8 @@ class Drops:
     @property
     def averaged(self) -> tuple[tuple[int, ...], ...]:
         """The rows, from 0, of the tests at one speed: those of each speed that several have."""
-        rows = [row for row, why in enumerate(map(_lacks, self.v, self.e)) if not why]
+        aside = dict(self.aside)
+        rows = [row for row in range(len(self.v)) if row not in aside]
         alike = (tuple(row for row in rows if self.v[row] == test.speed) for test in self.tests)
         return tuple(each for each in alike if len(each) > 1)
 

@@ -221,9 +221,14 @@ def chance(probability: float, other: float, places: int = 2) -> str:
     return f"{decimals(100 * probability, places).text} %"
 
 
-def degrees_of_freedom(number: int) -> str:
-    """How many there are, in words: ``1 degree of freedom``."""
-    return f"{number} degree{'s' * (number != 1)} of freedom"
+def degrees_of_freedom(number: float) -> str:
+    """How many there are, in words.
+
+    >>> degrees_of_freedom(1), degrees_of_freedom(8.2)
+    ('1 degree of freedom', '8 degrees of freedom')
+    """
+    said = f"{number:.0f}"
+    return f"{said} degree{'s' * (said != '1')} of freedom"
 
 
 def probability(p: float) -> str:

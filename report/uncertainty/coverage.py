@@ -18,6 +18,7 @@ import numpy as np
 
 from ..distribution import DIVISORS, DOMINANT, LEVEL, MOST_DOF, PARTS, Shape
 from ..laws import Array, Law, Samples
+from ..result.numbers import degrees_of_freedom
 from ..result.uncertain import ErrorSource
 from .conformity import beyond_each
 
@@ -395,7 +396,7 @@ def coverage(shape: Shape, law: Law | None, dof: float, level: float = LEVEL) ->
     if isinstance(law, Convolved):
         one, because = law.effective, "the convolved distributions of its sources"
         if math.isfinite(one):
-            because += f", those without ends as one t with {one:.0f} degrees of freedom"
+            because += f", those without ends as one t with {degrees_of_freedom(one)}"
         return law.half(level), because
     if law is not None or shape in PARTS:
         factor = DIVISORS[shape] * PARTS[shape](level) if law is None else law.half(level)
@@ -404,4 +405,4 @@ def coverage(shape: Shape, law: Law | None, dof: float, level: float = LEVEL) ->
         return NormalDist().inv_cdf((1 + level) / 2), "a normal distribution"
     from scipy.special import stdtrit  # a quarter of a second, for those who have degrees of freedom
 
-    return float(stdtrit(dof, (1 + level) / 2)), f"a t distribution with {dof:.0f} degrees of freedom"
+    return float(stdtrit(dof, (1 + level) / 2)), f"a t distribution with {degrees_of_freedom(dof)}"

@@ -12,7 +12,7 @@ from ..distribution import Shape
 from ..quantity import behind
 from ..result import uncertain
 from ..result.conformity import lines
-from ..result.numbers import decimals, for_json, rounded, stated
+from ..result.numbers import decimals, degrees_of_freedom, for_json, rounded, stated
 from ..result.result import Report
 from ..result.shares import foremost
 from .blocks import Block, TextTable, printers
@@ -201,7 +201,7 @@ def _of_scatter(report: Report, budget: uncertain.Budget, found: uncertain.Scatt
     u, expanded = (f"{report.sure(budget.name, each).text}{unit}" for each in (found.u, found.expanded))
     yield (
         f"by the scatter of what it was fitted to, u = {u}, U = {expanded} with k = "
-        f"{rounded(found.factor, 3).text} for {_level(budget)} (Student's t, {found.dof} degrees of freedom)"
+        f"{rounded(found.factor, 3).text} for {_level(budget)} (Student's t, {degrees_of_freedom(found.dof)})"
     )
 
 

@@ -374,13 +374,12 @@ def test_what_is_at_its_limit_conforms_there_too(
     recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """In doubles 9.95 - 10 is a little less than -0.05."""
-    files = {
-        "workbook.py": AT_LIMITS,
-        "m.csv": "point,x [mm],nominal [mm]\n1,10.05,10\n2,9.95,10\n3,20.10,20\n",
-        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
-        'x = "u = 0.01 mm"\nnominal = "exact"\n[limits]\ndev = "-50 .. 100 um"\nrel = "-0.5 .. 0.5 %"\n',
-    }
-    delivered = Office.made(tmp_path / "made", files)
+    said = (
+        '[uncertainty]\nx = "u = 0.01 mm"\nnominal = "exact"\n'
+        '[limits]\ndev = "-50 .. 100 um"\nrel = "-0.5 .. 0.5 %"\n'
+    )
+    rows = "point,x [mm],nominal [mm]\n1,10.05,10\n2,9.95,10\n3,20.10,20\n"
+    delivered = Office.made(tmp_path / "made", method(AT_LIMITS, rows, sources=said))
     every = delivered.report.uncertain().conformities
     assert {each.decision for each in every} == {Decision.CONFORMS}
     read = recalculate({"edited": delivered.edited({("x", 0): 10.05})})["edited"]
@@ -537,20 +536,16 @@ def test_what_has_no_value_is_not_decided_and_says_why(
     recalculate: spreadsheets.Recalculate, tmp_path: Path
 ) -> None:
     """An emptied reading, three that are made equal, and one whose cube no double holds."""
-    files = {
-        "workbook.py": SCATTER,
-        "m.csv": "reading,x [mm]\n1,1.2\n2,1.3\n3,1.1\n",
-        "report.toml": 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n[uncertainty]\n'
-        'x = "u = 0.01 mm"\n[limits]\ny = ">= 1 mm"\ns = "<= 0.2 mm"\n',
-    }
-    made = Office.made(tmp_path / "made", files)
+    said = '[uncertainty]\nx = "u = 0.01 mm"\n[limits]\ny = ">= 1 mm"\ns = "<= 0.2 mm"\n'
+    rows = "reading,x [mm]\n1,1.2\n2,1.3\n3,1.1\n"
+    made = Office.made(tmp_path / "made", method(SCATTER, rows, sources=said))
     edits: dict[str, spreadsheets.Edits] = {
         "empty": {("x", 1): None}, "equal": {("x", row): 1.2 for row in range(3)}, "huge": {("x", 1): 1e300},
     }  # fmt: skip
     read = recalculate({name: made.edited(edit) for name, edit in edits.items()})
-    said = "standard uncertainty u", "conformance probability", "decision"
+    lines = "standard uncertainty u", "conformance probability", "decision"
     found = budgets(read["empty"]["uncertainty"])["y[2]"]
-    assert {found[each, "B"] for each in said} == {"#INPUT!"}
+    assert {found[each, "B"] for each in lines} == {"#INPUT!"}
     found = budgets(read["equal"]["uncertainty"])["s"]
-    assert [found[each, "B"] for each in said[::2]] == ["#N/A", "#N/A"]
+    assert [found[each, "B"] for each in lines[::2]] == ["#N/A", "#N/A"]
     assert read["huge"]["report"].get("A3", "") == ""
