@@ -16,7 +16,7 @@ from .files.manifest import manifest_of
 from .inputs.folders import INPUTS, holds, is_report, output, told
 from .machine.background import Background, LateArgument, Telling
 from .machine.provenance import processor, sources
-from .machine.staging import put, staged
+from .machine.staging import put, refuse_link, staged
 from .machine.timing import timed
 from .messages.errors import UsageError, diagnose, unknown
 from .stages import Step, book, refereed_values, refuse_too_many_rows, silent, with_uncertainties
@@ -181,7 +181,9 @@ def _of_another(study: Study, out: Path) -> Path | None:
 
 
 def _refuse_anothers(study: Study, out: Path) -> None:
-    """Refuse to put a report in the place of that of another folder, which is there as it was built."""
+    """Refuse to put a report where nobody said, or in the place of another folder's, as it was built there."""
+    if out == output(study.folder):
+        refuse_link(out)
     other = _of_another(study, out)
     before = manifest_of(out) if other else None
     if other and before and holds(other, before.inputs):

@@ -208,6 +208,30 @@ def test_nothing_is_written_among_the_files_of_somebody(
     assert [path.name for path in (tmp_path / "mine").iterdir()] == ["notes.txt"]
 
 
+@pytest.mark.parametrize("link", ["out", "out/figures"])
+def test_nothing_is_written_or_removed_where_a_link_leads(
+    link: str, tmp_path: Path, gauge: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["build", str(gauge), "--to", "html,latex"]) == 0
+    elsewhere = tmp_path / "elsewhere"
+    (gauge / link).rename(elsewhere)
+    (gauge / link).symlink_to(elsewhere)
+    toml, before = gauge / "report.toml", hashes(elsewhere)
+    toml.write_text(toml.read_text().replace("0.1 K", "0.2 K"))
+    assert main(["build", str(gauge), "--to", "html,latex"]) == 2
+    assert "cannot be written: it is a link to " in capsys.readouterr().err
+    assert main(["build", str(gauge), "--to", "json"]) == (2 if link == "out" else 0)  # no figure any more
+    assert hashes(elsewhere) == before
+    (gauge / link).unlink()
+    (tmp_path / "link").symlink_to(elsewhere)
+    named = ["build", str(gauge), "--to", "json", "--out", str(tmp_path / "link")]
+    assert main(named) == (0 if link == "out" else 2)  # what is named may be one, but not to somebody's figures
+    capsys.readouterr()
+    elsewhere.rename(tmp_path / "gone")
+    assert main(named) == 2
+    assert "cannot be written: it is a link to " in capsys.readouterr().err
+
+
 def test_a_build_without_its_manifest_is_told_how_to_go_on(
     gauge: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

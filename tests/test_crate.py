@@ -223,9 +223,12 @@ def test_the_inputs_of_an_earlier_crate_are_replaced_unless_somebody_changed_the
     write(out, "2026-03-31", "MIT")
     assert (out / "inputs" / "report.toml").read_bytes() == new
     (out / "inputs" / "report.toml").write_bytes(b"mine")
-    with pytest.raises(OutputError, match=r"'inputs/report.toml' was changed after it was put there"):
+    with pytest.raises(OutputError, match=r"'inputs/report.toml' was changed after it was put there") as told:
         write(out, "2026-03-31", "MIT")
     assert (out / "inputs" / "report.toml").read_bytes() == b"mine"
+    assert "delete it: it is copied again then" in str(told.value)
+    (out / "inputs" / "report.toml").unlink()
+    write(out, "2026-03-31", "MIT")
 
 
 @pytest.mark.parametrize("name", ["../secret", "/etc/hostname"])

@@ -24,7 +24,7 @@ from ..inputs.folders import INPUTS, built_from, changed
 from ..machine.scratch import scratch
 from ..machine.staging import put
 from ..machine.stopping import unstoppable
-from ..messages.errors import LoopsheetError, OutputError, UsageError, diagnose, why
+from ..messages.errors import Location, LoopsheetError, OutputError, UsageError, diagnose, why
 
 NAME = "ro-crate-metadata.json"
 _BUILD = "loopsheet build"
@@ -111,11 +111,16 @@ def _read(folder: Path, name: str, digest: str) -> bytes:
     """Return a file as the manifest has it."""
     file = folder / name
     if not file.resolve().is_relative_to(folder.resolve()) or not file.is_file():
-        raise OutputError(diagnose("LS610", text=name, reason="is missing"))
+        raise _not_as_built(folder, name, "is missing")
     content = file.read_bytes()
     if hashlib.sha256(content).hexdigest() != digest:
-        raise OutputError(diagnose("LS610", text=name, reason="was changed after it was built"))
+        raise _not_as_built(folder, name, "was changed after it was built")
     return content
+
+
+def _not_as_built(folder: Path, name: str, reason: str, helps: str = "build the report again") -> OutputError:
+    place = Location((folder / name).as_posix())
+    return OutputError(diagnose("LS610", place, text=name, reason=reason, suggestion=helps))
 
 
 def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> None:
@@ -123,12 +128,14 @@ def _refuse_what_somebody_changed(out: Path, inputs: Mapping[str, bytes]) -> Non
     before = added(out)
     for name, content in inputs.items():
         if not (out / name).resolve().is_relative_to(out.resolve()):
-            raise OutputError(diagnose("LS610", text=name, reason="leads out of the folder"))
+            raise _not_as_built(out, name, "leads out of the folder", "delete the link")
         if not (out / name).is_file():
             continue
         there = (out / name).read_bytes()
         if there != content and hashlib.sha256(there).hexdigest() != before.get(Path(name)):
-            raise OutputError(diagnose("LS610", text=name, reason="was changed after it was put there"))
+            raise _not_as_built(
+                out, name, "was changed after it was put there", "delete it: it is copied again then"
+            )
 
 
 def added(out: Path) -> dict[Path, str]:

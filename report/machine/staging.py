@@ -166,6 +166,8 @@ def staged(
     # Of a folder that may not be entered, nothing is known; to make it then says why it cannot be.
     if os.path.exists(out) and not os.path.isdir(out):
         raise OutputError(diagnose("LS602", text=str(out)))
+    if not os.path.exists(out):
+        refuse_link(out)
     made = [p for p in (out, *out.parents) if not os.path.exists(p)]
     stage = out
     try:
@@ -300,6 +302,20 @@ def _refuse_what_is_in_the_way(out: Path, name: Path) -> None:
         if (out / parent).exists() and not (out / parent).is_dir():
             error = FileExistsError(f"{parent} is a file")
             raise OutputError(diagnose("LS601", text=name.as_posix(), **why(error)))
+        refuse_link(out / parent)
+
+
+def refuse_link(folder: Path) -> None:
+    """Write nowhere but in folders that were named: where a link leads to was not.
+
+    Raises
+    ------
+    OutputError
+        The folder is a link.
+    """
+    if os.path.islink(folder):  # false where nobody may enter
+        error = FileExistsError(f"it is a link to {os.readlink(folder)}")
+        raise OutputError(diagnose("LS601", text=folder.as_posix(), **why(error)))
 
 
 def _listed(folder: Path) -> dict[Path, str] | None:
@@ -345,10 +361,7 @@ def _added(
     return {
         name: digest
         for name, digest in added(out).items()
-        if os.path.isfile(out / name)  # false for a name that no file can have, too
-        and (out / name).resolve() == out.resolve() / name  # no link leads elsewhere
-        and ".." not in name.parts
-        and not (stage / name).exists()
+        if _is_there(out, name) and not (stage / name).exists()
     }
 
 
@@ -375,9 +388,10 @@ def _together(stage: Path, out: Path) -> tuple[bytes, list[Path]]:
 
 
 def _is_there(out: Path, name: Path) -> bool:
-    """Whether what a manifest names is a file of an output; no name makes us read outside of it."""
-    inside = not (name.is_absolute() or ".." in name.parts or (out / name).is_symlink())
-    return inside and (out / name).is_file()
+    """Whether what a manifest names is a file of an output; no name and no link lead outside of it."""
+    if name.is_absolute() or ".." in name.parts or not os.path.isfile(out / name):
+        return False  # or a name that no file can have
+    return (out / name).resolve() == out.resolve() / name
 
 
 def _stale(out: Path, names: Collection[Path], built: dict[Path, str]) -> list[Path]:

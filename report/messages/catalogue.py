@@ -432,7 +432,7 @@ CATALOGUE: dict[str, Entry] = {
         "output not as it was built",
         "'{text}' {reason}",
         "the files that manifest.json lists, as they were built",
-        "build the report again; 'loopsheet verify' tells what else is different",
+        "{suggestion}; 'loopsheet verify' tells what else is different",
     ),
     "LS611": Entry("not a date", "not a date: '{text}'", "a day of the calendar, YYYY-MM-DD", "{suggestion}"),
     "LS612": Entry(
