@@ -181,7 +181,7 @@ def _of_another(study: Study, out: Path) -> Path | None:
 
 
 def _refuse_anothers(study: Study, out: Path) -> None:
-    """Refuse to put a report where nobody said, or in the place of another folder's, as it was built there."""
+    """Refuse to put a report where nobody said, or in the place of another folder's that is as built."""
     if out == output(study.folder):
         refuse_link(out)
     other = _of_another(study, out)

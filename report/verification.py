@@ -95,7 +95,7 @@ def verify(
             *_statements(then, now),
             *_outputs(out, then, now, rounded),
             *(Check("output", name, False, f"{name} {_NOT_OF_CRATE}") for name in altered(out)),
-            *_moves(differences),
+            *(_moves(differences) if differences else _unread(out)),
         )
         verdict = _verdict(checks, then, now, differences, rounded, bool(report.exactly))
     return Verification(checks, differences, verdict)
@@ -203,11 +203,20 @@ def _allowed(report: Report) -> dict[str, dict[Index, float]]:
     }
 
 
-def _moves(found: Differences | None) -> Iterator[Check]:
+def _unread(out: Path) -> Iterator[Check]:
+    """Why no number is compared, where that is not told of the file itself."""
+    if (out / NAME).is_file():
+        try:
+            read_result(out / NAME)
+        except InputError as error:
+            yield Check(
+                "number", "all", True, f"no number is compared: {error.diagnostics[0].message}", skipped=True
+            )
+
+
+def _moves(found: Differences) -> Iterator[Check]:
     from .views.differences import moved, reordered
 
-    if found is None:
-        return
     for move in found.moved:
         was, now, by = moved(move)
         said = f"{move.named} was {was} and is {now}" + behind(move.unit)
@@ -215,7 +224,8 @@ def _moves(found: Differences | None) -> Iterator[Check]:
     for word, names in (("new", found.added), ("not there any more", found.removed)):
         for name in names:
             yield Check("number", name, False, f"{name} is {word}")
-    kinds = {"method": found.method, "row": found.rows, "published": found.published, "data": found.checks}
+    kinds = {"method": found.method, "row": found.rows, "published": found.published}
+    kinds |= {"data": found.checks, "printed": found.printed}
     for kind, changes in kinds.items():
         for change in changes:
             said = (

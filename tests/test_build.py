@@ -225,7 +225,9 @@ def test_nothing_is_written_or_removed_where_a_link_leads(
     (gauge / link).unlink()
     (tmp_path / "link").symlink_to(elsewhere)
     named = ["build", str(gauge), "--to", "json", "--out", str(tmp_path / "link")]
-    assert main(named) == (0 if link == "out" else 2)  # what is named may be one, but not to somebody's figures
+    assert main(named) == (
+        0 if link == "out" else 2
+    )  # what is named may be one, but not to somebody's figures
     capsys.readouterr()
     elsewhere.rename(tmp_path / "gone")
     assert main(named) == 2
@@ -468,7 +470,13 @@ def test_a_place_that_may_not_be_entered_is_a_message(require: Callable[..., str
 def test_a_pdf_that_was_built_before_is_built_again(
     tmp_path: Path, files: tuple[str, ...], formats: tuple[str, ...] | None
 ) -> None:
-    manifest = {"schema": 1, "title": "t", "inputs": {}, "outputs": dict.fromkeys(files, "0"), "versions": {}}
+    manifest = {
+        "schema": 1,
+        "title": "t",
+        "inputs": {"report.toml": "0"},
+        "outputs": dict.fromkeys(files, "0"),
+        "versions": {},
+    }
     manifest |= {"values": ""}
     if files:
         (tmp_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")

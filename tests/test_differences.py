@@ -15,7 +15,7 @@ import pytest
 from msgspec import UNSET
 from msgspec.structs import replace
 
-from loopsheet.report.archive.differences import Differences, Move, compare
+from loopsheet.report.archive.differences import Differences, Move, OtherChange, compare
 from loopsheet.report.cli import main
 from loopsheet.report.files.form import Index
 from loopsheet.report.files.values import (
@@ -95,6 +95,8 @@ def test_another_status_without_a_number_has_moved() -> None:
     other = with_column("m", replace(M, value=None, status="#DOMAIN!"))
     assert compare(none, none).same == 4
     assert len(compare(none, other).moved) == 1
+    (move,) = compare(RESULT, with_column("m", replace(M, status="OK"))).moved
+    assert moved(move) == ("ok", "OK", "")  # and not 1.25 twice
 
 
 def test_another_uncertainty_is_told_also_where_the_number_moved() -> None:
@@ -133,9 +135,28 @@ def test_another_expanded_uncertainty_is_told_where_u_is_the_same() -> None:
     found = compare(before, replace(before, expanded=[replace(sure, U=1.0, k=4.0, dof=2.0)]))
     (move,) = found.moved
     assert (move.address, move.before, move.after) == ("U(m)", 0.5, 1.0)
+    (change,) = compare(before, replace(before, expanded=[replace(sure, level=0.9545)])).printed
+    assert change == OtherChange("U(m)", "95 % coverage", "95.45 % coverage")
     # With another u it is that which is told.
     wider = replace(with_column("m", replace(column, u=0.5)), expanded=[replace(sure, U=1.0)])
     assert [move.address for move in compare(before, wider).moved] == ["u(m)"]
+
+
+def test_what_people_read_of_the_same_number_is_told() -> None:
+    before = with_column("v", replace(V, text=["2.00", "3.00"]))
+    found = compare(before, with_column("v", replace(V, text=["2.00", "3.000"])))
+    assert found.printed == (OtherChange("v[2]", "3.00 m/s", "3.000 m/s"),)
+    assert found.any
+    assert as_text(found, 5).splitlines()[1:] == [
+        "printed    v[2]: 3.00 m/s",
+        "                 -> 3.000 m/s",
+        "different",
+    ]
+    in_mm = replace(V, unit="m", text=["2.00", "3.00"], shown=Unit(text="mm", scale=1e-3))
+    assert len(compare(before, with_column("v", in_mm)).printed) == 2
+    (retitled,) = compare(RESULT, replace(RESULT, title="T")).printed
+    assert retitled == OtherChange("title", "t", "T")
+    assert not compare(before, RESULT).any  # a file of before does not tell it
 
 
 def test_what_the_user_gave_comes_first_then_scalars() -> None:

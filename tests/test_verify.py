@@ -153,6 +153,17 @@ def test_an_output_that_is_no_result_any_more(campaign: Path) -> None:
     found = verify(campaign / "out", campaign)
     assert failed(found) == {"output": ["values.json"]}
     assert found.differences is None
+    (told,) = (check for check in found.checks if check.kind == "number")
+    assert told.skipped
+    assert told.message.startswith("no number is compared: 'values.json' is no result: ")
+
+
+def test_a_manifest_without_inputs_is_none(campaign: Path) -> None:
+    """Who empties them would not be told that something else went in."""
+    manifest = campaign / "out" / "manifest.json"
+    manifest.write_text(json.dumps({**json.loads(manifest.read_text()), "inputs": {}}))
+    with pytest.raises(InputError, match="inputs: expected `object` of length >= 1"):
+        verify(campaign / "out", campaign)
 
 
 def rounds(by: float) -> Callable[..., object]:

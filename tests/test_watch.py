@@ -46,7 +46,7 @@ def server(tmp_path: Path) -> Iterator[Server]:
     (out / "link.html").symlink_to(tmp_path / "secret")
     listed = dict.fromkeys(["report.html", "link.html", "gone.html", "../secret", "/etc/passwd"], "0")
     (out / "manifest.json").write_text(
-        json.dumps({"schema": 1, "inputs": {}, "outputs": listed, "versions": {}})
+        json.dumps({"schema": 1, "inputs": {"report.toml": "0"}, "outputs": listed, "versions": {}})
     )
     with Server(out) as made:
         yield made

@@ -14,7 +14,7 @@ from ..axis import singular
 from ..cells.address import address, named
 from ..cells.address import word as is_word
 from ..files.form import Index
-from ..files.values import Column, Conformity, Result
+from ..files.values import Column, Expanded, Result
 from ..quantity import behind
 from ..result.agreement import LIMIT
 
@@ -101,6 +101,8 @@ class Differences:
     """Published values with another verdict."""
     checks: tuple[OtherChange, ...]
     """What is told of the data: decisions on conformity, marks, warnings, what is expected or left out."""
+    printed: tuple[OtherChange, ...] = ()
+    """What people read otherwise though its number is the same: digits, a level of coverage, the title."""
     order: tuple[str, ...] = ()
     """Index sets whose rows stand in another order, compared by word: nothing is another for that."""
 
@@ -108,7 +110,7 @@ class Differences:
     def any(self) -> bool:
         """Whether they differ by more than rounding, and than the order of rows that words tell apart."""
         told = self.moved, self.method, self.added, self.removed, self.rows, self.published, self.checks
-        return any(told)
+        return any(told) or bool(self.printed)
 
 
 def compare(
@@ -134,6 +136,7 @@ def compare(
     first, last = (_Rows(each, _standing(each, by_word)) for each in (before, after))
     same = noise = 0
     moved: list[tuple[tuple[int, ...], Move]] = []
+    printed = _changes({"title": before.title}, {"title": after.title})
     headline, aside = after.headline or before.headline, {*before.aside, *after.aside}
     for name, old in before.cells.items():
         new = after.cells.get(name)
@@ -147,6 +150,7 @@ def compare(
         there, words = new.cells, dict(before.known(name).items() & after.known(name).items())
         places, u_before, u_after = last.places(name), old.uncertainties, new.uncertainties
         U_before, U_after = _expanded(before, name), _expanded(after, name)
+        read_before, read_after = _printed(old), _printed(new)
         for index, was in old.cells.items():
             place = places.get(first.row(name, index))
             if place is None:
@@ -169,8 +173,13 @@ def compare(
                     moved.append((behind_all, _move(f"u({cell})", word, kind, new, u_was, u_now, True)))
                     continue
             U_was, U_now = (each.get(at) for each, at in ((U_before, index), (U_after, place)))
-            if U_was and U_now and not _as_sure(U_was[0], U_now[0]):  # with the same u
-                moved.append(((0, *rank), _move(f"U({cell})", word, kind, new, U_was, U_now, True)))
+            if U_was and U_now and not _as_sure(U_was.U, U_now.U):  # with the same u
+                U_held = (U_was.U, "not known"), (U_now.U, "not known")
+                moved.append(((0, *rank), _move(f"U({cell})", word, kind, new, *U_held, True)))
+            elif U_was and U_now:
+                printed += _changes(*({f"U({cell})": _coverage(each)} for each in (U_was, U_now)))
+            if was == now and index in read_before and place in read_after:
+                printed += _changes({cell: read_before[index]}, {cell: read_after[place]})
     return Differences(
         *names,
         same=same,
@@ -182,6 +191,7 @@ def compare(
         rows=tuple(_changes(_called(first), _called(last))),
         published=tuple(_changes(_verdicts(first), _verdicts(last))),
         checks=tuple(_changes(_checks(first, accepted), _checks(last, accepted))),
+        printed=tuple(printed),
         order=tuple(axis for axis in by_word if _reordered(_words(before, axis), _words(after, axis))),
     )
 
@@ -217,12 +227,28 @@ class _Rows:
         return self.address(*named(name)) if _CELL.fullmatch(name) else name
 
 
-def _expanded(result: Result, name: str) -> dict[Index, Held]:
+def _printed(column: Column) -> dict[Index, str]:
+    """What people read, of every row that is listed; none where the file tells nothing of it."""
+    every = column.text if isinstance(column.text, list) else [column.text or None]
+    told = zip(column.cells, every, strict=False)
+    return {index: f"{text}{_unit(column)}" for index, text in told if text}
+
+
+def _unit(column: Column) -> str:
+    """What stands behind what people read."""
+    return behind(column.unit if column.shown is UNSET else column.shown.text)
+
+
+def _coverage(found: Expanded) -> str:
+    return "" if found.level is None else f"{100 * found.level:.12g} % coverage"
+
+
+def _expanded(result: Result, name: str) -> dict[Index, Expanded]:
     """The expanded uncertainty of the rows of a column of which it is known."""
     every = () if result.expanded is UNSET else result.expanded
     index = {address(name, label): label for label in result.cells[name].cells}
     index |= {address(name, (word,)): label for label, word in result.known(name).items()}
-    return {index[each.cell]: (each.U, "not known") for each in every if each.cell in index}
+    return {index[each.cell]: each for each in every if each.cell in index}
 
 
 def _words(result: Result, axis: str) -> dict[int, str]:
@@ -347,15 +373,10 @@ def _checks(rows: _Rows, accepted: bool) -> dict[str, str]:
         for each in result.oddities
     }
     for each in result.conformity or ():
-        within = _within_which(each, result.cells[each.column]) if accepted else ""
+        unit = _unit(result.cells[each.column])
+        within = f", acceptance limits {each.accepted}{unit}" if accepted and each.accepted else ""
         told[f"limits {rows.called(each.cell)}"] = f"{each.limits}: {each.decision}{within}"
     return told
-
-
-def _within_which(found: Conformity, column: Column) -> str:
-    """The acceptance limits, as the report tells them."""
-    unit = column.unit if column.shown is UNSET else column.shown.text
-    return f", acceptance limits {found.accepted}{behind(unit)}" if found.accepted else ""
 
 
 def _changes(before: Mapping[str, str], after: Mapping[str, str]) -> list[OtherChange]:

@@ -40,7 +40,7 @@ class Manifest(Form, frozen=True, kw_only=True):
 
     schema: Schema
     title: Text = ""
-    inputs: Sums
+    inputs: Annotated[Sums, Meta(min_length=1)]
     outputs: Sums
     sources: dict[Text, Text] = field(default_factory=dict)
     versions: dict[Text, Text]

@@ -46,6 +46,7 @@ def _others(found: Differences) -> tuple[tuple[str, Sequence[OtherChange]], ...]
         ("row", found.rows),
         ("published", found.published),
         ("check", found.checks),
+        ("printed", found.printed),
     )
 
 
@@ -90,6 +91,8 @@ def moved(move: Move) -> tuple[str, str, str]:
     ('20', '20.25', '+0.25 K')
     """
     was, now = move.before, move.after
+    if was == now and move.status[0] != move.status[1]:
+        was = now = None
     if was is None or now is None:
         return _value(was, move.status[0], 6), _value(now, move.status[1], 6), ""
     digits = next((d for d in range(6, 17) if f"{was:.{d}g}" != f"{now:.{d}g}"), 17)

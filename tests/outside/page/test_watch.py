@@ -14,7 +14,7 @@ def test_an_open_page_follows(browser: Browser, tmp_path: Path) -> None:
     def issue(text: str) -> None:
         (tmp_path / "report.html").write_text(f"<title>Steel</title><p>{text}</p>")
 
-    manifest = {"schema": 1, "inputs": {}, "outputs": {"report.html": "0"}, "versions": {}}
+    manifest = {"schema": 1, "inputs": {"report.toml": "0"}, "outputs": {"report.html": "0"}, "versions": {}}
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     issue("first")
     with Server(tmp_path) as server:
