@@ -39,6 +39,7 @@ exit codes:
      that 'show' or 'budget' is asked for has no value, a card is made from data that 'check' finds fault with
   2  the input or the command line is wrong; the message says where
   3  a bug of loopsheet
+  130 and 143 where it was interrupted or ended: nothing is half-written then
 
 what was made of the same inputs before is not made again (--no-cache does); --timing tells where time goes
 
@@ -114,6 +115,7 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     from .inputs.folders import is_report, written
     from .messages.errors import UsageError, diagnose, listing, suggest, unknown
 
+    arguments = _ended(arguments)
     words = [word for word in arguments if not word.startswith("-")]  # no option before the verb takes a word
     if words and words[0] not in VERBS:
         hint = suggest(words[0], VERBS)
@@ -132,6 +134,13 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
         raise _wrong(f"'{left[0]}' is a word too many", f"loopsheet {options.verb}")
     _in_order(options)
     return options
+
+
+def _ended(arguments: Sequence[str]) -> list[str]:
+    """A command line without the ``--`` behind which no word is an option: a folder ``-x`` is ``./-x``."""
+    at = arguments.index("--") if "--" in arguments else len(arguments)
+    behind = (f"./{word}" if word.startswith("-") else word for word in arguments[at + 1 :])
+    return [*arguments[:at], *behind]
 
 
 def _verb_first(arguments: Sequence[str]) -> list[str]:

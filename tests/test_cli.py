@@ -6,6 +6,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -131,6 +132,22 @@ def test_an_option_may_stand_before_its_verb(capsys: pytest.CaptureFixture[str])
     assert told[0] == told[1]
     assert main(["--no-cash", "show", "alpha_mean", "paper"]) == 2
     assert "did you mean '--no-cache'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("verb", ["build --to json", "why v[1]", "verify"])
+def test_behind_two_dashes_a_folder_may_begin_with_one(
+    verb: str,
+    campaign: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(campaign, "-steel")
+    code = main([*verb.split(), "--", "-steel"])
+    told = capsys.readouterr().err
+    assert "LS608" in told if verb == "verify" else code < 2, told  # nothing was built there
+    assert "LS604" not in told
 
 
 def test_show_tells_value_equation_and_precedents(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,7 @@
 """Units that a method declares: SI in formulas, as they are written in everything that a reader sees."""
 
 import json
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -122,7 +123,12 @@ def test_limits_of_an_angle_name_their_unit(tmp_path: Path, capsys: pytest.Captu
     """Without it, degrees would be read as radians."""
     limits = '[limits]\nturned = "{}"\n'
     assert main(["build", str(folder(tmp_path, TOML + limits.format("300 .. 400"))), "--to", "json"]) == 2
-    assert "error[LS211]: the limit of turned has no unit: '300'" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "error[LS211]: the limit of turned has no unit: '300 .. 400'" in told
+    (help_,) = re.findall(r'for example "(.*)"', told)
+    assert main(["build", str(folder(tmp_path, TOML + limits.format(help_))), "--to", "json"]) == 0
+    assert main(["build", str(folder(tmp_path, TOML + limits.format("<= 400"))), "--to", "json"]) == 2
+    assert 'for example "<= 400 arcmin"' in capsys.readouterr().err
     assert main(["build", str(folder(tmp_path, TOML + limits.format("5 .. 6 deg"))), "--to", "json"]) == 0
 
 

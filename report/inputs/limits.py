@@ -308,18 +308,29 @@ def check_limits(limits: Sequence[Limits], cells: Cells, findings: Findings, wor
             findings.add("LS506", each.at, name=name, text=each.address, known=own)
         ends, width = [number for number in (each.low, each.high) if number], each.guard.width
         said, unit, at = f"the limit of {name}", cells[name][0], each.text_at or each.at
-        if all(_in_place(number, unit, said, at, findings) for number in ends) and width:
-            _in_place(width, unit, said, each.guard.at, findings, width=True)
+        both = " .. ".join(number.text for number in ends)
+        whole = both if len(ends) == 2 else f"{'<=' if each.high else '>='} {both}"
+        if all(_in_place(number, whole, unit, said, at, findings) for number in ends) and width:
+            _in_place(width, width.text, unit, said, each.guard.at, findings, width=True)
 
 
 def _in_place(
-    number: Printed, unit: str, said: str, at: Location | None, findings: Findings, *, width: bool = False
+    number: Printed,
+    whole: str,
+    unit: str,
+    said: str,
+    at: Location | None,
+    findings: Findings,
+    *,
+    width: bool = False,
 ) -> bool:
-    """Whether a number can be a limit of what is declared in a unit, or a width there; if not, it is told."""
+    """Whether a number can be a limit of what is declared in a unit, or a width there; if not, it is told.
+
+    `whole`: what is stated, without a unit.
+    """
     if is_pure(number.unit) and not is_pure(unit):  # 5 of what is shown in deg would be read as radians
         if number.unit == "1":
-            example = f"{number.text} {unit}"
-            findings.add("LS211", at, name=said, text=number.text, unit=unit, example=example)
+            findings.add("LS211", at, name=said, text=whole, unit=unit, example=f"{whole} {unit}")
         else:
             known = examples(parse_open(unit))
             findings.add("LS422", at, name=said, text=number.unit, unit=unit, known=known, suggestion="")

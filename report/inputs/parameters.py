@@ -109,7 +109,8 @@ class _Reader:
         at = self.toml.value(*self.path)
         if isinstance(value, int | float) and not isinstance(value, bool):
             digits = (at.source or "")[(at.column or 1) - 1 :][: at.length]
-            self.findings.add("LS206", at, text=name, example=f'"{digits}{self.suffix}"')
+            if_in = f" if it is in {self.parameter.unit}, and else its own unit" if self.suffix else ""
+            self.findings.add("LS206", at, text=name, example=f'"{digits}{self.suffix}"{if_in}')
             return None
         if isinstance(value, dict) and self.said.take:
             return self.said.take(value, self.parameter)
