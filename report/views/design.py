@@ -6,7 +6,8 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 
-from ..quantity import behind
+from ..messages.errors import listing
+from ..quantity import behind, span
 from ..result.design import Planned
 from ..result.numbers import for_json, rounded
 from .blocks import Block, TextTable, printers
@@ -54,13 +55,30 @@ def _said(plan: Planned) -> Iterator[str]:
 def _warnings(plan: Planned) -> list[str]:
     """What would be odd, and pairs that would tell nothing, of which a report of measurements is silent."""
     marks = plan.report.marks
-    found = [check.message for check in plan.report.oddities if not check.passed]
+    found = [*_beyond(plan), *(check.message for check in plan.report.oddities if not check.passed)]
     for margin in (margin for margin in marks.margins if margin.limit.silent):
         cells = plan.report.values.cells(margin.of.name)
         near = [cell.address for cell, out in zip(cells, marks.outside(margin), strict=True) if out]
         if near:
             found.append(f"{', '.join(near)}: {margin.limit.told}")
     return found
+
+
+def _beyond(plan: Planned) -> Iterator[str]:
+    """Where the curve would be known from no measurement."""
+    name = next(iter(plan.u))  # what was chosen
+    measured = sorted(plan.followed.values.cells(name), key=lambda cell: cell.value or 0.0)
+    low, high = measured[0], measured[-1]
+    values = plan.report.values.value[name].tolist()
+    tests = [
+        str(test)
+        for test, value in zip(plan.report.inputs.only.tests, values, strict=True)
+        if not (low.value or 0.0) <= value <= (high.value or 0.0)
+    ]
+    if tests:
+        there = f"test{'s' * (len(tests) > 1)} {listing(tests, last='and')}"
+        known = span(*map(plan.followed.text, (low, high)))
+        yield f"{there}: {name} beyond what was measured, {known}; the curve is extrapolated there"
 
 
 def _best(plan: Planned) -> str:
