@@ -220,7 +220,7 @@ def test_it_says_what_a_newcomer_asks(capsys: pytest.CaptureFixture[str]) -> Non
         assert line in out
     assert "| test | v \\[m/s\\] | u(v) |" in told(capsys, *words, "--format", "markdown")
     assert "warning: tests 1, 2, 3 and 4: v beyond what was measured, 2.334 m/s to 4.993 m/s;" in out
-    assert "beyond" not in told(capsys, "--speeds", "2.4, 3, 4.993 m/s", "--cell", "alpha_mean")
+    assert "beyond" not in told(capsys, "paper", "--speeds", "2.4, 3, 4.993 m/s", "--cell", "alpha_mean")
 
 
 @pytest.mark.parametrize(
