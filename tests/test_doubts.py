@@ -11,6 +11,7 @@ import pytest
 from helpers import method_folder
 
 from loopsheet.report.cli import main
+from loopsheet.report.inputs.folders import PAPER
 from loopsheet.report.result.uncertain import Budget
 from loopsheet.report.study import Study
 from loopsheet.report.uncertainty.monte_carlo import by_draws, sample
@@ -68,6 +69,14 @@ def test_a_range_that_first_order_lets_be_negative(folder: Path) -> None:
     assert drawn.law is not None
     (low,) = drawn.law.quantile(np.array([0.025]))
     assert spread.value + low * spread.u > 0
+
+
+def test_a_sum_of_squares_is_not_negative() -> None:
+    report = Study(PAPER.parent / "worked_example").computed
+    (chi2,) = (each for each in report.uncertain().budgets if each.cell == "chi2_eiv")
+    assert 0 < chi2.second < chi2.u**2 / 4  # which alone would be no reason
+    assert chi2.value < chi2.expanded
+    assert chi2.doubt == "U does not hold: second order counts"
 
 
 def test_it_stands_where_the_number_stands(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

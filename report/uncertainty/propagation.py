@@ -312,7 +312,7 @@ class Spread:
             for alone in (True, False)
         )
         own_parts = value, u, told, pairs, dof, level, factor, because, second, unlooked, shape, law
-        summed, least = tuple(self._summed(column)), _least(column)
+        summed, least = tuple(self._summed(column)), self._least(column)
         little = 0.0
         if self.second and not (second or unlooked):
             little = float(np.nan_to_num(self.second.variance(cell, found, little=True))[0])
@@ -481,6 +481,14 @@ class Spread:
         doubts = {at[n]: f"U may not hold: {COUNT if second[n] else UNLOOKED}" for n in asked}
         return {at[n]: n for n in known}, added, doubts
 
+    def _least(self, column: Column) -> float:
+        """What its cells cannot fall below, in SI, as far as its rule or the workbook tells."""
+        rule, workbook = column.rule, self.inputs.workbook
+        if isinstance(rule, Given) and rule.bounds.low is not None:
+            return float(rule.bounds.low)
+        sums = {each.name for each in workbook.squares} | {each.name for each in workbook.curves}
+        return 0.0 if column.nonnegative or column.name in sums else -math.inf
+
     def _contribution(self, n: int, u: float, share: float) -> Contribution:
         source = self.sources[n]
         name, row, _ = source.moves[0]
@@ -569,14 +577,6 @@ def _moved(own: Any, n: int) -> Sequence[tuple[int, float]]:
         return list(zip(which.tolist(), own[n, which].tolist(), strict=True))
     part = slice(*own.indptr[n : n + 2].tolist())
     return sorted(zip(own.indices[part].tolist(), own.data[part].tolist(), strict=True))
-
-
-def _least(column: Column) -> float:
-    """What its cells cannot fall below, in SI, as far as its rule tells."""
-    rule = column.rule
-    if isinstance(rule, Given) and rule.bounds.low is not None:
-        return float(rule.bounds.low)
-    return 0.0 if column.nonnegative else -math.inf
 
 
 def _misfits(spread: Spread, workbook: Workbook) -> Iterator[tuple[str, Misfit | None]]:
