@@ -352,7 +352,8 @@ class _Picture:
             named = outermost[: None if total <= MOST_NAMES else SOME_NAMES]
             shown = np.union1d(shown, named[inside[named]])
         elif len(within) < total:
-            more += f"; {total - len(within)} of {total} lie outside"
+            out = total - len(within)
+            more += f"; {out} of {total} {'lies' if out == 1 else 'lie'} outside"
         ends = _bars(at[:, shown], np.hstack([trace.u for trace in own])[:, shown])
         if ends.size:
             low, high = np.transpose(self.frame.ends)[:, :, None, None]

@@ -132,7 +132,7 @@ function drawChart(chart, look) {
       const shown = new Set([...evenly(within.length, MOST_DOTS).map((n) => within[n]), ...named.filter(frame.holds)]);
       const thinned = within.length > MOST_DOTS ? `, one in ${Math.round(within.length / MOST_DOTS)} drawn` : "";
       picture.dots([...shown].map(({ at }) => at), few ? 4.5 : 2.6, one.colour);
-      const left = out && !one.named ? `; ${out} of ${all.length} lie outside` : "";
+      const left = out && !one.named ? `; ${out} of ${all.length} ${out === 1 ? "lies" : "lie"} outside` : "";
       key(one, one.named ? all.length : traces.length, thinned + left, draw("circle", { cx: 6, r: 1.4, fill: one.colour }));
       for (const point of named) {
         const inside = frame.holds(point), at = point.at.map((value, n) => Math.min(Math.max(value, frame.ends[n][0]), frame.ends[n][1]));

@@ -210,7 +210,7 @@ function onPaste(event) {
   if (!isText(element) || !/[\t\n\r]/.test(text)) return;
   handled(event);
   if (editing) cancel();
-  const block = text.split(/\r\n|\r|\n/).map((line) => line.split("\t"));
+  const block = text.split(/\r\n|\r|\n/).filter((line) => line || !text.includes("\t")).map((line) => line.split("\t"));
   const commas = block.flat().some((one) => !one.includes(".") && one.includes(",") && NUMBER.test(normalised(one)));
   const read = (one = "") => normalised(one, commas), head = block.length > 1 && isHead(block[0]) && block.shift();
   const table = tableOf(element), said = (table ? pasteRows : pasteScalars)(element, block, read, head, table);
@@ -218,8 +218,10 @@ function onPaste(event) {
   if (said) note(said);
 }
 
+const refused = (why) => `Nothing was pasted: ${why}.`;
+
 function pasteScalars(element, rows, read) {
-  if (rows.some((fields) => fields.filter(Boolean).length > 1)) return "Nothing was pasted: here stands one number in a row.";
+  if (rows.some((fields) => fields.filter(Boolean).length > 1)) return refused("here stands one number in a row");
   const names = all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell), first = names.indexOf(element.dataset.cell);
   change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(withoutUnit(rows[n][0], name)))));
 }
@@ -234,17 +236,17 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
     // Rows as they stand in the file, or numbers of rows before what stands here; in which order, no head tells.
     const added = nextLabel(state, axis), news = first.filter((text) => !labels.includes(text)), wide = width > names.length;
     const numbered = wide && new Set(first).size === rows.length && news.every((text, n) => text === String(added + n));
-    if (wide && !numbered) return `Nothing was pasted: ${plural(width, "column")} for ${names.length}: copy them with their heads.`;
+    if (wide && !numbered) return refused(`${plural(width, "column")} for ${names.length}: copy them with their heads`);
     const whole = numbered && width === file.length && file.includes("test");
     const there = file.filter((name) => LIVE.columns[name] || (!whole && /^u\(/.test(name))), at = whole ? 0 : there.indexOf(cell);
-    if ((whole ? inputs : names.slice(0, width)).some((name, n) => name !== there[at + n])) return `Nothing was pasted: the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads.`;
+    if ((whole ? inputs : names.slice(0, width)).some((name, n) => name !== there[at + n])) return refused(`the columns of ${LIVE.tables[axis].file} stand in another order (${there.join(", ")}): copy them with their heads`);
     if (numbered) names = whole ? file.map((name) => (name === "test" ? "" : name)) : ["", ...names];
   }
   const why = names.find((name) => name.why)?.why ?? (inputs.some((name) => names.includes(name)) ? "" : `no such column is typed here: ${head.join(", ")}`);
-  if (why) return `Nothing was pasted: ${why}.`;
+  if (why) return refused(why);
   const at = names.indexOf(""), numbers = at < 0 ? [] : rows.map((fields) => read(fields[at]));
   const twice = numbers.find((text, n) => text && numbers.indexOf(text) !== n);
-  if (twice !== undefined) return `Nothing was pasted: ${called} ${twice} stands twice in it.`;
+  if (twice !== undefined) return refused(`${called} ${twice} stands twice in it`);
   let rowsLost = 0;
   for (const [down, fields] of rows.entries()) {
     const label = numbers[down] ?? index, place = labels.indexOf(label) + (at < 0 ? down : 0);
@@ -254,7 +256,7 @@ function pasteRows({ dataset: { cell, index } }, rows, read, head, { axis, input
     for (const [n, text] of test ? fields.entries() : []) {
       const name = names[n], word = LIVE.tables[axis].texts[test.label]?.[name];
       if (inputs.includes(name)) test.cells[name] = read(withoutUnit(text, name));
-      else if (word && text && read(word) !== read(text)) return `Nothing was pasted: ${name} of ${called} ${test.label} is ${word}, not ${text}.`;
+      else if (word && text && read(word) !== read(text)) return refused(`${name} of ${called} ${test.label} is ${word}, not ${text}`);
       else if (!word && text && name !== "") lost.add(n);
     }
   }

@@ -448,7 +448,7 @@ NAMED = {("v", 1): "2.4", ("v", 2): "3.0", ("x_p", 1): "24.1", ("x_p", 2): "30.1
 @pytest.mark.parametrize(
     ("cell", "block", "said"),
     [
-        ("e", "x_p [µm]\tv [m/s]\n24,1\t2,4\n30,1\t3,0\n", ""),
+        ("e", "x_p [µm]\tv [m/s]\n24,1\t2,4\n\n30,1\t3,0\n", ""),  # a blank line is no row
         ("v", "test\tv\tx_p [um]\n2\t3.0\t30.1\n1\t2.4\t24.1\n", ""),
         ("v", "v\twhere\tx_p\n2.4\tlab 3\t24.1\n3.0\tlab 4\t30.1\n", "Pasted, but 1 column had no place."),
         ("v", "test\tv\tx_p\n2\t3.0\t30.1\n9\t2\t2\n1\t2.4\t24.1\n", "Pasted, but 1 row had no place."),
