@@ -127,13 +127,14 @@ def _drawings(inputs: Inputs) -> Collection[str]:
 def evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Report:
     """Everything but the proofs."""
     from .judge.oddities import oddities
+    from .uncertainty.beyond import outside
 
     report = _evaluated(made, ledger, step)
     if report.inputs.cards.codes:
         from .cards import asked_for
 
         report = replace(report, cards=asked_for(report))
-    return replace(report, oddities=(*oddities(report), *_claims(report)))
+    return replace(report, oddities=(*oddities(report, outside(report)), *_claims(report)))
 
 
 def _evaluated(made: Prepared, ledger: Callable[[], Ledger], step: Step) -> Report:

@@ -12,7 +12,6 @@ import loopsheet
 from loopsheet.report.build import build
 from loopsheet.report.charts import BARS
 from loopsheet.report.column import SheetError
-from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.method import words
 from loopsheet.report.study import Study
 from loopsheet.report.views import charts
@@ -60,7 +59,7 @@ def test_its_residuals_are_held_against_what_is_stated(tmp_path: Path, stated: f
         numbers.append(len(x) - 2)
     assert misfit.chi2 == pytest.approx(squares / stated**2, rel=1e-6)
     assert misfit.dof == sum(numbers)
-    found = [check.message for check in oddities(report) if check.name == "line_S"]
+    found = [check.message for check in report.oddities if check.name == "line_S"]
     assert ["understated" in each for each in found] == [told]
 
 

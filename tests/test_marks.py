@@ -256,3 +256,38 @@ def test_a_mark_needs_no_value_of_its_cell() -> None:
     assert values.status["alpha"][0]
     assert marks.outside(rises).tolist() == [True]
     assert marks.of("alpha") == [""]
+
+
+def elastic(folder: Path, slip: float = 0.0) -> Path:
+    """A campaign on a target that is loaded elastically, alpha = 3/2, printed with four digits."""
+    folder.mkdir()
+    lines = ["test,v [m/s],e [1],x_p [um]"]
+    for test, v in enumerate((1.0, 1.5, 2.0, 3.0, 4.0), start=1):
+        restitution = 0.6 * v**-0.1
+        x_m = (2.5 * 0.01 * v**2 / (2 * 5e9)) ** (1 / 2.5)
+        x_p = 1e6 * x_m * (1 - restitution**2) + slip * (test == 2)
+        lines.append(f"{test},{v:.3f},{restitution:.4f},{x_p:.2f}")
+    (folder / "measurements.csv").write_text("\n".join(lines) + "\n")
+    (folder / "report.toml").write_text(
+        'title = "Elastic"\nworkbook = "soft_impact"\n[parameters]\nball_mass = "10 g"\nbeta = "1.5"\n'
+        '[measurements]\nfile = "measurements.csv"\n'
+    )
+    return folder
+
+
+def test_what_its_uncertainty_takes_beyond_a_limit_is_no_finding(tmp_path: Path) -> None:
+    """Of honest numbers at the limit half lie beyond it: they are marked, and nobody is blamed."""
+    report = Study(elastic(tmp_path / "honest")).computed
+    (alpha,) = (each for each in report.marks.margins if each.column.name == "alpha_margin")
+    marked = report.marks.count(alpha)
+    assert 0 < marked.number < marked.size
+    of_limit = {check.name: check for check in report.oddities if check.kind == "limit"}
+    found = of_limit[f"alpha: {alpha.limit.mark}"]
+    assert (found.passed, found.note) == (True, "")
+    assert found.message == f"alpha: {marked.said} by no more than 2 u"
+    assert not any(check.word for check in of_limit.values())
+    # A twentieth of a micrometre is ten times what is printed.
+    slipped = Study(elastic(tmp_path / "slipped", 0.05)).computed
+    told = next(check for check in slipped.oddities if check.name == found.name)
+    assert told.word
+    assert "look at test 2 first" in told.message

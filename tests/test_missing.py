@@ -13,7 +13,6 @@ from test_left_out import campaign, refused
 
 import loopsheet
 from loopsheet.report.cli import main
-from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.result.verdict import EXACT, NOT_FOUND, REACHABLE
 from loopsheet.report.study import Study
 from loopsheet.report.views import html
@@ -61,7 +60,7 @@ def test_what_needs_it_has_no_value_and_the_rest_goes_on(tmp_path: Path) -> None
 
 def test_it_is_told_where_its_row_stands(tmp_path: Path) -> None:
     folder = readings(tmp_path / "r")
-    (cells,) = (check for check in oddities(Study(folder).computed) if check.name == "cells")
+    (cells,) = (check for check in Study(folder).computed.oddities if check.name == "cells")
     assert (cells.passed, cells.at.path) == (False, (folder / "measurements.csv").as_posix())
     assert cells.at.line == 3
 

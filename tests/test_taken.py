@@ -16,7 +16,6 @@ from two_reports import forged
 
 from loopsheet.report.cli import main
 from loopsheet.report.inputs.inputs import load
-from loopsheet.report.judge.oddities import oddities
 from loopsheet.report.machine.kept import SETTING
 from loopsheet.report.messages.errors import InputError, render
 from loopsheet.report.result.uncertain import Budget
@@ -153,7 +152,7 @@ def test_a_distribution_comes_with_a_number(tmp_path: Path, error: str) -> None:
 def test_what_is_doubted_of_a_number_is_told_where_it_is_taken(tmp_path: Path) -> None:
     at = folder(tmp_path / "again", AGAIN, taken(c="c", d="d"))
     build(folder(at / "ball", SQUARE, {"a": "0.1, u = 0.01", "b": "0.1, u = 0.1"}))
-    told = {check.name: check for check in oddities(Study(at).computed) if check.kind == "taken"}
+    told = {check.name: check for check in Study(at).computed.oddities if check.kind == "taken"}
     assert told["c"].note == ""
     assert told["d"].note == "warning"
     assert "ball/out/values.json, where of d: U may not hold: second order counts" in told["d"].message

@@ -4,32 +4,32 @@ from __future__ import annotations
 
 import math
 import re
-import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..axis import GroupAxis
 from ..cells.address import address
 from ..cells.marks import Margin, MarkCount, margins
 from ..cells.values import Cell, Status
 from ..messages.diagnostics import Check, Location
-from ..messages.errors import listing
+from ..messages.errors import listing, some
 from ..quantity import behind
 from ..result.chi_square import RARE, asked_of_chance, freedom, head, tail, tied, ties
 from ..result.numbers import degrees_of_freedom, probability, rounded
 from ..result.statements import of_column
 from ..sheet import Column, Given, Sheet
-from . import mixed_rows, readings, taken
+from . import mixed_rows, readings, row_words, taken
 from .claims import CLAIM
+from .row_words import called
 from .suspects import outliers, suspected
 
 if TYPE_CHECKING:
-    from ..inputs.expected import OfCell
     from ..inputs.inputs import Inputs
     from ..inputs.measurements import Measurements
     from ..inputs.uncertainty import SharedError
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..workbook import Curve, SquareSum
 
 DATA, LIMIT, UNCERTAINTY, SQUARES, GROUPS = "data", "limit", "uncertainty", "squares", "groups"
-CONSTANTS, WORDS, TWICE = "constants", "words", "twice"
+CONSTANTS, TWICE = "constants", "twice"
 EXPECTED, LEFT_OUT = "expected", "left out"
 """The kinds of these checks."""
 CELLS, ROWS, RESULT, PUBLISHED = "cells", "rows", "result", "published"
@@ -49,17 +49,10 @@ MISFIT = "what is fitted does not describe all {axis}, or their standard uncerta
 OVERSTATED = (
     "the standard uncertainties of the {axis} are overstated, or their deviations are not independent"
 )
-MOST = 6
-"""So many cells are named; the rest are counted."""
-CAUSES = 4
-"""And so many causes of one column."""
 REACH = 2
-"""So many standard uncertainties, an interval of 95 %, lie above zero where nothing can lie below it."""
-
-
-def _taken(inputs: Inputs) -> list[str]:
-    """The columns that are taken from other reports, where either knows rows by words."""
-    return [name for name, own in inputs.taken.items() if name in inputs.measured and own.told]
+"""So many standard uncertainties make an interval of 95 %."""
+CAUSES = 4
+"""So many causes of one column are named."""
 
 
 def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
@@ -75,7 +68,7 @@ def names(sheet: Sheet, inputs: Inputs) -> dict[str, list[str]]:
             *(name for name, _ in workbook.means),
         ],
         GROUPS: [shared.name for shared in inputs.uncertainty.shared if shared.groups],
-        WORDS: [*(column for table in inputs.tables for column in table.table.groups), *_taken(inputs)],
+        row_words.WORDS: row_words.names(inputs),
         TWICE: [table.name or table.row for table in inputs.tables],
         readings.SCATTERS: readings.names(sheet, inputs),
         mixed_rows.MIXED: mixed_rows.names(sheet),
@@ -112,32 +105,23 @@ def _adjusted(sheet: Sheet, inputs: Inputs) -> Iterator[tuple[str, list[str]]]:
             yield name, sorted(own)
 
 
-def _foreign(word: str, other: str) -> str:
-    """The first letter of a word that another one has not, by its name, if it looks like one that it has.
+def oddities(report: Report, beyond: Mapping[str, NDArray[np.bool_]]) -> tuple[Check, ...]:
+    """Check the data of a report that has been computed.
 
-    >>> _foreign("\u04121", "B1"), _foreign("B1", "\u04121"), _foreign("CO", "Co")
-    (', with CYRILLIC CAPITAL LETTER VE', '', '')
+    `beyond`: the rows outside of each limit by more than their uncertainty, by the name of its margin.
     """
-    odd = next(
-        (letter for letter in word if letter not in other and letter.isalpha() and not letter.isascii()), ""
-    )
-    return f", with {unicodedata.name(odd, f'U+{ord(odd):04X}')}" if odd else ""
-
-
-def oddities(report: Report) -> tuple[Check, ...]:
-    """Check the data of a report that has been computed."""
-    return tuple(_Oddities(report).checks())
+    return tuple(_Oddities(report, beyond).checks())
 
 
 class _Oddities:
     """One look at a report: what is odd, and what of that somebody expects."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: Report, beyond: Mapping[str, NDArray[np.bool_]]) -> None:
         self.report, self.inputs, self.sheet, self.values = report, report.inputs, report.sheet, report.values
         self.met: dict[str, list[str]] = {each.address: [] for each in self.inputs.expected}
-        self.failed = _Odd(self, report.faults)
+        self.failed, self.beyond = _Odd(self, report.faults), beyond
         self.outside = {
-            margin.column.name: _Odd(self, self.cells(margin), f"is marked ({margin.limit.mark})")
+            margin.column.name: _Odd(self, self.cells(margin), _marked(margin))
             for margin in report.marks.margins
         }
         self.silent = {
@@ -163,8 +147,7 @@ class _Oddities:
         yield from map(self.of_curve, self.report.workbook.curves)
         yield from (self.of_mean(*each) for each in self.report.workbook.means)
         yield from (self.of_groups(each) for each in self.inputs.uncertainty.shared if each.groups)
-        yield from (self.of_words(table, each) for table in self.inputs.tables for each in table.table.groups)
-        yield from map(self.of_taken, _taken(self.inputs))
+        yield from row_words.checks(self.report)
         yield from map(self.of_twice, self.inputs.tables)
         yield from readings.checks(self.report)
         yield from mixed_rows.checks(self.report)
@@ -174,10 +157,14 @@ class _Oddities:
         yield from self.of_left_out()
 
     def cells(self, margin: Margin) -> Iterator[Cell]:
-        """The cells outside of a limit, of those that tell something."""
+        """The cells outside of a limit by more than their uncertainty, of those that tell something."""
         labels, marks = self.values.labels(margin.of), self.report.marks
         for row in np.flatnonzero(marks.outside(margin) & marks.telling(margin)).tolist():
-            yield self.values.cell(margin.of.name, labels[row])
+            cell = self.values.cell(margin.of.name, labels[row])
+            if self.beyond[margin.column.name][row]:
+                yield cell
+            else:  # what somebody expects of it has come about
+                self.reason(cell, _marked(margin))
 
     def pairs(self, cells: Iterable[Cell]) -> set[tuple[tuple[str, int], ...]]:
         """The tests of the rows that rest on several."""
@@ -211,7 +198,7 @@ class _Oddities:
         """The tests whose numbers are all stated to be exact, where a fit weighs by what is stated."""
         for table in self.inputs.tables:
             weighed = {name: of for name, of in self.sheet.weighed.items() if of in table.measured}
-            of = _some(list(weighed.values()))
+            of = some(list(weighed.values()))
             for row, test in enumerate(table.tests):
                 if weighed and not any(self.values.value[name][row] for name in weighed):
                     said = f"{table.row} {table.called(test)} has {of} without uncertainty"
@@ -222,7 +209,7 @@ class _Oddities:
         by_cause: dict[str, list[Cell]] = {}
         for cell in cells:
             by_cause.setdefault(f"{cell.status.code}: {cell.why}", []).append(cell)
-        causes = [f"{_some(list(map(self.named, each)))} {cause}" for cause, each in by_cause.items()]
+        causes = [f"{some(list(map(self.named, each)))} {cause}" for cause, each in by_cause.items()]
         if (more := len(causes) - CAUSES) > 0:
             causes[CAUSES:] = [f"and {more} other causes" if more > 1 else "and another cause"]
         have = f": {len(cells)} of {self.size(column)} have" if column.axis is not None else " has"
@@ -251,7 +238,7 @@ class _Oddities:
                     which = foreseen if self.follows(cell, f"is {over}") else found
                     which.setdefault(over, []).extend(self.told_of(cell))
         told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
-        said = "; ".join(f"{_some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
+        said = "; ".join(f"{some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
         if found:
             return Check(DATA, ROWS, False, said, self.inputs.place)
         if said and not self.failed.open and any(self.met.values()):  # nobody else tells of it
@@ -275,8 +262,8 @@ class _Oddities:
         if missing:
             causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
             has = "has" if len(missing) == 1 else "have"
-            said = f"{_some([cell.address for cell in missing])} of the result {has} no value"
-            said += f", for want of {_some(list(causes))}" * any(cell.culprit for cell in missing)
+            said = f"{some([cell.address for cell in missing])} of the result {has} no value"
+            said += f", for want of {some(list(causes))}" * any(cell.culprit for cell in missing)
         return Check(DATA, RESULT, not missing, said, self.inputs.place)
 
     def told_of(self, cell: Cell) -> list[str]:
@@ -318,15 +305,16 @@ class _Oddities:
     def of_limit(self, margin: Margin) -> Check:
         """Whether the cells of a column lie inside of one limit."""
         odd, name, limit = self.outside[margin.column.name], _name(margin), margin.limit
+        marked, of = self.report.marks.count(margin), margin.of.name
         if not odd:
             inside = f"inside {limit.source}" if limit.source else f"none {limit.mark}"
-            return Check(LIMIT, name, True, f"{margin.of.name}: {inside}", self.inputs.place)
-        said = f"{MarkCount(margin, len(odd.told), self.report.marks.count(margin).size).said}: "
-        if margin.of.axis is None:
-            said = f"{limit.told}: "
-        return self.check(
-            LIMIT, name, f"{margin.of.name}: {said}{_some(list(map(self.valued, odd.told)))}", odd
-        )
+            if marked.number:
+                inside = f"{limit.told if margin.of.axis is None else marked.said} by no more than {REACH} u"
+            return Check(LIMIT, name, True, f"{of}: {inside}", self.inputs.place)
+        said = MarkCount(margin, len(odd.told), marked.size).said if margin.of.axis else limit.told
+        by = f" by more than {REACH} u" * (len(odd.cells) < marked.number)
+        told = f"{of}: {said}{by}: {some(list(map(self.valued, odd.told)))}"
+        return self.check(LIMIT, name, told, odd)
 
     def of_uncertainty(self, name: str) -> Check:
         """Whether what is stated of the numbers of a positive quantity leaves them above zero."""
@@ -342,7 +330,7 @@ class _Oddities:
         odd = _Odd(self, reach, "has an implausible uncertainty")
         of = f"{len(odd.told)} of {self.size(column)}: " if column.axis is not None else ""
         said = f"u({name}): {of}{REACH} u reach below 0, where none can lie: "
-        said += f"{_some([reach[cell] for cell in odd.told])}; stated is {of_column(self.report, name)}: "
+        said += f"{some([reach[cell] for cell in odd.told])}; stated is {of_column(self.report, name)}: "
         said += "is its unit right, and is it a standard uncertainty?"
         return self.check(UNCERTAINTY, name, said, odd, self.where_stated(odd.told[0]))
 
@@ -384,7 +372,7 @@ class _Oddities:
         """What is left of a sum of squares without the rows that lie off, as they were found one by one."""
         found = outliers(self.report, squares)
         told = ", then ".join(
-            f"{self.numbered(self.inputs.only, [each.test])} (farthest of {each.among}, "
+            f"{called(self.report, self.inputs.only, [each.test])} (farthest of {each.among}, "
             f"{rounded(each.deviation, 2).plain} standard deviations off: {probability(each.chance)})"
             for each in found
         )
@@ -424,7 +412,7 @@ class _Oddities:
         what = "what is stated" if known.is_stated else "what the printed digits say"
         told = f"; if the model is right, u is {rounded(known.birge, 2).plain} times {what} (Birge's ratio)"
         if curve.observed not in self.inputs.measured or curve.weighed or self.sheet[curve.name].axis:
-            return f"{told}, and by the scatter {_some([f's_{each}' for each in curve.fitted])}"
+            return f"{told}, and by the scatter {some([f's_{each}' for each in curve.fitted])}"
         shown = self.report.shown[curve.scatter]
         size = rounded(shown.of(self.values.scalar(curve.scatter)), 2).plain + behind(shown.unit)
         return f'{told}: {curve.observed} = "u = {size}, dof = {known.dof}" under [uncertainty] says so'
@@ -472,48 +460,9 @@ class _Oddities:
         if not rest:
             said = f"{shared.name}: every {row} is in a group"
             return Check(GROUPS, shared.name, True, said, self.inputs.place)
-        which = f"{self.numbered(table, rest)} {'is' if len(rest) == 1 else 'are'}"
+        which = f"{called(self.report, table, rest)} {'is' if len(rest) == 1 else 'are'}"
         said = f"{shared.name}: {which} in no group of it, and so without it; a group may be of one {row}"
         return Check(GROUPS, shared.name, True, said, self.inputs.place, note="warning")
-
-    def of_words(self, table: Measurements, column: str) -> Check:
-        """Whether a word by which rows belong together may be another one misspelt."""
-        found = [each for each in table.alike if each.column == column]
-        if not found:
-            return self.of_numbers(column)
-        told = [
-            f"'{word}' ({self.numbered(table, rows)}{_foreign(word, other)}) is nearly '{other}' "
-            f"({self.numbered(table, others)}{_foreign(other, word)})"
-            for _, word, rows, other, others, _ in found
-        ]
-        said = f"{column}: {_some(told)}: is that misspelt? Each word is a group of its own"
-        return Check(WORDS, column, True, said, found[0].at, note="warning")
-
-    def of_numbers(self, column: str) -> Check:
-        """Whether a group is named by its number, which is another group's once the table is sorted."""
-        axes = [axis for axis in self.sheet.axes if isinstance(axis, GroupAxis) and axis.members.by == column]
-        said_of: tuple[OfCell, ...] = (*self.inputs.limits, *self.inputs.expected)
-        for each in said_of:
-            name, index = each.cell
-            if name not in self.sheet or self.sheet[name].axis not in axes or not index:
-                continue
-            called, by_number = self.values.cell(name, index).address, address(name, index)
-            if called != by_number and by_number in str(each.at.source):  # limits of the column name no group
-                said = f"{by_number} is {called} as it stands; in a sorted table it is another {column}'s"
-                return Check(WORDS, column, True, f"{said}: write {called}", each.at, note="warning")
-        return Check(WORDS, column, True, f"{column}: no word is nearly another", self.inputs.place)
-
-    def of_taken(self, column: str) -> Check:
-        """Whether rows of another report are found by words: its order may have made their numbers."""
-        own = self.inputs.taken[column]
-        hint = ": columns of the same words in both say which is which" * own.doubtful
-        note = "warning" * own.doubtful
-        return Check(WORDS, column, True, f"{column}: {own.told}{hint}", self.inputs.place, note=note)
-
-    def numbered(self, table: Measurements, rows: Sequence[int]) -> str:
-        """``run 2``, ``runs 1 and 3``."""
-        every = table.name or next((axis.name for axis in self.sheet.axes if not axis.parents), "")
-        return f"{table.row if len(rows) == 1 else every} {_some(list(map(str, rows)))}"
 
     def of_twice(self, table: Measurements) -> Check:
         """Whether a row stands in a table under two numbers."""
@@ -522,14 +471,14 @@ class _Oddities:
             return Check(TWICE, name, True, f"no {table.row} stands there twice", self.inputs.place)
         column = next(iter(table.measured))
         odd = _Odd(self, [self.values.cell(column, (test,)) for _, test in pairs], "stands there twice")
-        told = _some([self.numbered(table, pair) for pair in pairs])
+        told = some([called(self.report, table, pair) for pair in pairs])
         said = f"{told} have the same numbers in all columns: is one of them another, or entered twice?"
         return self.check(TWICE, name, said, odd)
 
     def of_constants(self, cell: str, constants: Sequence[str]) -> Check:
         """That a result rests on constants whose errors are not independent."""
         said = (
-            f"{cell} rests on {_some(constants)}, which were adjusted together: their errors are correlated, "
+            f"{cell} rests on {some(constants)}, which were adjusted together: their errors are correlated, "
         )
         said += "which its u leaves out; state it under [uncertainty.correlation]"
         return Check(CONSTANTS, cell, True, said, self.inputs.place, note="warning")
@@ -545,7 +494,7 @@ class _Oddities:
                 self.reason(cell, _no_value(cell))
         for each in self.inputs.expected:
             met = list(dict.fromkeys(self.met[each.address]))
-            said = f"{each.address}, {each.reason}: {_some(met)}"
+            said = f"{each.address}, {each.reason}: {some(met)}"
             if not met:
                 said = f"{each.address} is expected to be odd ({each.reason}), and is not: drop it"
             yield Check(EXPECTED, each.address, bool(met), said, each.at, note="expected")
@@ -631,15 +580,9 @@ class _Odd:
         return self.open or self.cells
 
 
+def _marked(margin: Margin) -> str:
+    return f"is marked ({margin.limit.mark})"
+
+
 def _no_value(cell: Cell) -> str:
     return f"has no value ({cell.status.code})"
-
-
-def _some(parts: Sequence[str]) -> str:
-    """The first parts, and how many more there are.
-
-    >>> _some(["a"]), _some(["a", "b", "c"]), _some(list("abcdefgh"))
-    ('a', 'a, b and c', 'a, b, c, d, e, f and 2 more')
-    """
-    shown = [*parts[:MOST], *([f"{len(parts) - MOST} more"] if len(parts) > MOST else [])]
-    return listing(shown, most=MOST + 1, last="and")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from .catalogue import CATALOGUE
@@ -27,6 +27,7 @@ __all__ = [
     "render",
     "render_all",
     "sentence_case",
+    "some",
     "suggest",
     "unknown",
     "why",
@@ -89,6 +90,20 @@ def listing(words: Iterable[str], most: int = 12, last: str = "or") -> str:
     if len(names) > most:
         return ", ".join(names[:most]) + f" ... ({len(names)} in all)"
     return f" {last} ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+NAMED = 6
+"""So many of what is found are named; the rest are counted."""
+
+
+def some(parts: Sequence[str]) -> str:
+    """The first parts, and how many more there are.
+
+    >>> some(["a"]), some(["a", "b", "c"]), some(list("abcdefgh"))
+    ('a', 'a, b and c', 'a, b, c, d, e, f and 2 more')
+    """
+    left = len(parts) - NAMED
+    return listing([*parts[:NAMED], *([f"{left} more"] if left > 0 else [])], NAMED + 1, last="and")
 
 
 def sentence_case(said: str) -> str:
