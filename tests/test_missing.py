@@ -267,6 +267,22 @@ def test_a_mean_beside_a_fit_that_fails_stays(tmp_path: Path) -> None:
     assert report.values.scalar("xbar") == 1
 
 
+@pytest.mark.parametrize(
+    ("name", "before"), [("count_of_a", True), ("count_of_a", False), ("of_readings_5", True)]
+)
+def test_what_counts_has_its_name_for_itself(
+    name: str, before: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Else it would be divided by what somebody called so."""
+    lines = ["n_a = let(count(a), 'with a')", "n_a2 = let(count(a + b), 'with both')"]
+    lines.insert(0 if before else 2, f"{name} = let(2 * b, 'mine')")
+    code = METHOD.replace("import Method,", "import Method, count,") + "".join(
+        f"    {each}\n" for each in lines
+    )
+    assert main(["check", str(readings(tmp_path, code=code))]) == 2
+    assert f"{name} is declared twice: it is the " in capsys.readouterr().err
+
+
 def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = "x [m],y [m]\n1,2.1\n2,3.9\n3,\n4,8.2\n,9\n6,12.1\n"
     main(["check", str(readings(tmp_path / "r", table, code=SUMS))])

@@ -165,7 +165,7 @@ class MethodBody(dict[str, Any]):
         is_cell = isinstance(formula, Indexed) and formula.indices == (over.index,)
         cell = formula if is_cell else self._of_rows(formula, over)
         name = f"count_of_{cell.base.name}{by}"
-        if name not in self.columns:
+        if name not in self.aside:
             column = self._aside(name, f"{over.name} with a value", every)
             self.columns[name] = replace(column, alongside=(self.columns[cell.base.name],))
         return self.columns[name].cell
@@ -256,6 +256,8 @@ class MethodBody(dict[str, Any]):
 
     def _aside(self, name: str, meaning: str, formula: Any) -> Column:
         """A column that no line declares."""
+        if name in self.columns:
+            raise SheetError(f"{name} is declared twice: it is the {meaning}, too", name)
         said = ComputedLine(meaning, "", {"positive": False}, (exact(formula),), next(self.own))
         self.columns[name] = column = self._computed(name, said)
         self.aside.append(name)
