@@ -49,7 +49,8 @@ class Estimates(NDArrayOperatorsMixin):
     status : tuple of str
         ``ok``, or the code of a cell without a value: ``#NOROOT!``.
     texts, sure : tuple of str
-        As the report shows the cells and their uncertainties, with units; empty where there is none.
+        As the report shows the cells and their uncertainties, with units: of a cell without a value its code,
+        of an uncertainty that is not known nothing.
     addresses, words : tuple of str
         Of the cells; and by which word a row is known, if it is.
     """
@@ -70,6 +71,14 @@ class Estimates(NDArrayOperatorsMixin):
     def __float__(self) -> float:
         """The value of a scalar."""
         return float(self.value)
+
+    def __int__(self) -> int:
+        """The value of a scalar, without its fraction."""
+        return int(self.value)
+
+    def __round__(self, digits: int | None = None) -> float:
+        """The value of a scalar with so many decimals."""
+        return round(float(self), digits)
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         """The values, for NumPy; of a scalar without an axis."""

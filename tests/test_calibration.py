@@ -59,7 +59,10 @@ def test_it_is_as_expected_in_every_engine(tmp_path: Path, every_engine: Callabl
     [
         ("c", ["c, samples: c[5] has no value (#INPUT!)", "over 4 of 9 readings, as is expected"]),
         ("c[jam A]", ["c: 3 of 9 readings have no value: c[7] (jam B), c[8] (jam B)", "are over 4 of 9"]),
-        ("c[standard]", ["c[standard] is expected to be odd (samples), and is not: drop it", "c: 5 of 9"]),
+        (
+            "c[standard]",
+            ["c[standard] is expected to be odd (samples), and is not: drop that line", "c: 5 of 9"],
+        ),
     ],
 )
 def test_empty_cells_are_expected_of_a_column_or_of_a_word(

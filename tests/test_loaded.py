@@ -35,6 +35,7 @@ def test_columns_behave_as_arrays_do() -> None:
     assert (2 * each).tolist() == (each.value * 2).tolist()
     assert (mean > 1) & (mean < 2)
     assert (each > mean).tolist() == (each.value > float(mean)).tolist()
+    assert (int(mean), round(mean, 2)) == (int(float(mean)), round(float(mean), 2))
     assert len(each) == len(each.index)
     with pytest.raises(TypeError):
         len(mean)

@@ -29,11 +29,19 @@ LIKE = ("20.01", "20.03", "19.99", "20.00", "20.02")
 SWAPPED = ("20.01", "20.03", "19.99", "20.20", "20.02")
 
 
-def report_of(folder: Path, readings: tuple[str, ...], stated: str) -> tuple[Report, Check]:
+def report_of(
+    folder: Path, readings: tuple[str, ...], stated: str, corrections: tuple[str, ...] = ()
+) -> tuple[Report, Check]:
+    code, head = METHOD, "reading,m [g]"
+    if corrections:
+        code = METHOD.replace(
+            "    rho_k = let((m - z)", '    b = measured("1", "buoyancy")\n    rho_k = let(b * (m - z)'
+        )
+        head, readings = f"{head},b [1]", tuple(map(",".join, zip(readings, corrections, strict=True)))
     rows = "".join(f"{n},{text}\n" for n, text in enumerate(readings, start=1))
     toml = 'workbook = "workbook.py"\n[measurements]\nfile = "m.csv"\n'
     toml += f'[parameters]\nz = "0.00 g"\nV = "10.00 cm^3"\n{stated}'
-    files = {"workbook.py": METHOD, "m.csv": f"reading,m [g]\n{rows}", "report.toml": toml}
+    files = {"workbook.py": code, "m.csv": f"{head}\n{rows}", "report.toml": toml}
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
     report = Study(folder).computed
@@ -87,3 +95,11 @@ def test_nothing_else_is(tmp_path: Path, readings: tuple[str, ...], stated: str,
     _, found = report_of(tmp_path, readings, stated)
     assert (found.passed, found.word) == (True, "")
     assert said in found.message
+
+
+@pytest.mark.parametrize(("digits", "word"), [("1.00012", "warning"), ("1.0", "")])
+def test_a_little_may_be_known_by_its_digits_alone(tmp_path: Path, digits: str, word: str) -> None:
+    """A column of which nothing is stated makes the others mute only where it matters."""
+    _, found = report_of(tmp_path, SWAPPED, '[uncertainty]\nm = "u = 0.02 g"\n', (digits,) * 5)
+    assert found.word == word
+    assert ("chi2 = " in found.message) == bool(word)

@@ -1,6 +1,7 @@
 """Columns of words beside what was measured come along: they name rows, and nothing is computed from them."""
 
 import io
+from contextlib import nullcontext
 from pathlib import Path
 
 import gas
@@ -217,3 +218,25 @@ def test_accepting_knows_rows_by_their_words(tmp_path: Path, capsys: pytest.Capt
         (tmp_path / name).write_text(text)
     assert main(["check", "--accept", str(tmp_path)]) == 0, capsys.readouterr()
     assert (tmp_path / "published.csv").read_text().endswith("T,b,right,5.0,mm,differs,5.0 -> 4.0,a slip\n")
+
+
+@pytest.mark.parametrize(
+    ("operators", "refused"),
+    [
+        (("2", "1", "x", "y"), True),
+        (("1", "2", "x", "y"), False),
+        (("2", "2", "x", "y"), False),
+        (("7", "8", "x", "y"), False),
+    ],
+    ids=["numbers of others", "its own number", "of several rows", "numbers of no row"],
+)
+def test_no_row_is_called_by_the_number_of_another(
+    operators: tuple[str, ...], refused: bool, tmp_path: Path
+) -> None:
+    """`p[2]` would be of the second row to some, and of the one that is called so to others."""
+    rows = zip(TABLE.splitlines()[1:], operators, strict=True)
+    named = [",".join((row.split(",")[0], name, *row.split(",")[2:])) for row, name in rows]
+    folder = gas.folder(tmp_path, table="\n".join((TABLE.splitlines()[0], *named, "")))
+    said = r"measurements\.csv:2:3[\s\S]*S2" if refused else ""
+    with pytest.raises(InputError, match=said) if refused else nullcontext():
+        assert Study(folder).inputs.only.remarks == ("operator", "remark")

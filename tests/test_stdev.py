@@ -54,6 +54,22 @@ def test_it_is_pythons_of_rows_groups_and_pairs(tmp_path: Path) -> None:
     assert values["of_pairs"] == pytest.approx(stdev(apart), rel=1e-12)
 
 
+def test_it_is_shown_in_the_unit_of_what_scatters(tmp_path: Path) -> None:
+    """Of per cents in per cent, of the means of groups, too, whose squares are in a column of their own."""
+    code = METHOD.partition("    of_all")[0].replace("mm", "%")
+    code = code.replace("of_all of_each", "of_a of_means") + (
+        "    of_a = let(stdev(a), 'of all')\n"
+        "    of_means = let(stdev(let(mean(a, of=specimen), 'of each')), 'of means')\n"
+    )
+    code = code.replace("let(mean(a, of=specimen), 'of each')", "each").replace(
+        "    of_a =", "    each = let(mean(a, of=specimen), 'of each')\n    of_a ="
+    )
+    table = "reading,specimen,a [%],b [%]\n1,A,1.0,1\n2,A,1.2,1\n3,B,1.7,1\n4,C,1.1,1\n"
+    report = Study(method_folder(tmp_path, code, table)).computed
+    assert {report.shown[name].unit for name in ("a", "each", "of_a", "of_means")} == {"%"}
+    assert report.values.scalar("of_means") == pytest.approx(stdev([0.011, 0.017, 0.011]), rel=1e-12)
+
+
 def test_of_one_reading_there_is_none_in_any_engine(
     tmp_path: Path, every_engine: Callable[..., str], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -7,7 +7,7 @@ law F = C x^alpha has the unit N/m^alpha, whatever alpha turns out to be.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 
@@ -160,18 +160,23 @@ def named_unit_of(columns: Mapping[str, Column], column: Column) -> str:
     return well_named(unit_of(columns, column), [unit for unit in units if not unit.startswith("like ")])
 
 
-def as_its_parts(columns: Mapping[str, Column], column: Column) -> Column:
+def as_its_parts(columns: Mapping[str, Column], column: Column, aside: Sequence[str] = ()) -> Column:
     """A column with the unit that its formula gives, and shown as what of that kind it is computed from.
 
     Where that is shown in several units it is shown in SI; so is a pure number, as a sine is no angle, unless
     it is a sum, a mean or a difference of such columns: of per cents.
+
+    `aside`: columns that no line declares, which are parts of a formula as it was written.
     """
     column = replace(column, unit=named_unit_of({**columns, column.name: column}, column))
     own = dict(dimension_of_unit(column.unit))
     if column.display:
         return column
     assert isinstance(column.rule, Formula)
-    formula = column.rule.expression
+    parts = [(columns[name].cell, columns[name].rule) for name in aside]
+    formula = column.rule.expression.xreplace(
+        {cell: rule.expression for cell, rule in parts if isinstance(rule, Formula)}
+    )
     named, alike = _named(formula), list[Column]()
     while named and not alike:  # a root of squares is shown as what is squared
         alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]

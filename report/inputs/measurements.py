@@ -355,6 +355,10 @@ class _Reading:
             _check_words(self.table, fields, name, self.findings)
             if len(tests) == len(fields):
                 near += _alike(self.table, dict(zip(tests, fields, strict=True)), name, self.findings)
+        naming = next((each for each in self.remarks if all(one.text for one in self.fields(each))), None)
+        if naming is not None and naming not in self.groups:
+            named = dict(zip(tests, self.fields(naming), strict=False))
+            _check_names(self.table, named, naming, self.findings)
         return tuple(near)
 
     def values(
@@ -458,6 +462,15 @@ def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: 
         if word.isdecimal() and number != int(word) in range(1, len(words) + 1):
             at, what = next(table.at(each) for each in fields if each.text == word), "the number of another"
             findings.add("LS318", at, name=name, what=what, text=word)
+
+
+def _check_names(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Findings) -> None:
+    """Refuse the number of another row as the word of one: nobody knows which of them ``x[2]`` is."""
+    texts = [each.text for each in fields.values()]
+    for test, each in fields.items():
+        if each.text.isdecimal() and test != int(each.text) in fields and texts.count(each.text) == 1:
+            findings.add("LS318", table.at(each), name=name, what="the number of another row", text=each.text)
+            return
 
 
 def _alike(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Findings) -> Iterator[Alike]:

@@ -496,7 +496,8 @@ class _Oddities:
             met = list(dict.fromkeys(self.met[each.address]))
             said = f"{each.address}, {each.reason}: {some(met)}"
             if not met:
-                said = f"{each.address} is expected to be odd ({each.reason}), and is not: drop it"
+                said = f"{each.address} is expected to be odd ({each.reason}), and is not: drop that line"
+                said += "; a column 'left out' of its table leaves a row out" * (not each.cell[0])
             yield Check(EXPECTED, each.address, bool(met), said, each.at, note="expected")
 
     def of_left_out(self) -> Iterator[Check]:

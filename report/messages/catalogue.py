@@ -200,9 +200,9 @@ CATALOGUE: dict[str, Entry] = {
         "{suggestion}",
     ),
     "LS318": Entry(
-        "groups without words",
+        "numbers for words",
         "{name} has {what}, such as '{text}'",
-        "words, the same for all rows that belong together",
+        "words that are no numbers of rows; of groups the same for all rows that belong together",
         "put a letter before each number: S{text}",
     ),
     "LS319": Entry(

@@ -606,7 +606,7 @@ class MethodBody(dict[str, Any]):
             return self._as_difference(replace(column, rule=rule, requires=requires), said_so=True)
         column = replace(column, rule=Formula(equation))
         if not said.unit:
-            column = as_its_parts(self.columns, column)
+            column = as_its_parts(self.columns, column, self.aside)
         return self._as_difference(column, said_so=not column.display.startswith("like "))
 
     def _ends(self, name: str, said: ComputedLine) -> tuple[dict[str, Expr], tuple[tuple[Any, str], ...]]:

@@ -522,7 +522,7 @@ class Spread:
         return found if found and found.dof == squares.freedom(len(rows)) else None
 
     def misfit_of_mean(self, name: str) -> Misfit | None:
-        """The same of a column about its mean: stated is what makes its rows differ, all of it."""
+        """The same of a column about its mean: stated is what makes its rows differ, but for a little."""
         rows = self._valued(name)
         if not 1 < len(rows) <= MOST_ROWS or not self.knows(name):
             return None
@@ -532,8 +532,9 @@ class Spread:
         if found is None:
             return None
         differing = np.any(moved != 0, axis=0) & np.any(moved == 0, axis=0)
-        stated = all(source.said for source, one in zip(self.sources, differing, strict=True) if one)
-        return replace(found, is_stated=stated)
+        said = np.array([source.said for source in self.sources], dtype=bool)
+        every, unsaid = (np.sum(np.square(moved[:, own]), axis=1) for own in (differing, differing & ~said))
+        return replace(found, is_stated=bool(np.all(unsaid <= COUNTS * every)))
 
     def _valued(self, name: str) -> list[int]:
         """The rows that have a value."""
