@@ -142,7 +142,7 @@ def _statements(then: Manifest, now: Manifest) -> Iterator[Check]:
     """A check for what a manifest says of the report otherwise than one that is built again."""
     for name, was, is_now in (("title", then.title, now.title), ("values", then.values, now.values)):
         if was and was != is_now:
-            said = f"of its {name} the manifest says '{was}', and '{is_now}' when it is built again"
+            said = f"the {name} was '{was}', as the manifest says, and is '{is_now}' when it is built again"
             yield Check("manifest", name, False, said)
 
 

@@ -226,6 +226,9 @@ class Thrice(Method):
         ("u = 0.120", "0.37", False),
         ("6 % of reading", "0.37", False),  # what is specified is as it is
         ("+-0.21 rect", "0.37", False),
+        ("u = 60000 ppm", "0.37", False),
+        ("u = 120 digits", "0.37", False),  # of a thousandth, and a count
+        ("u = 0.1 + 2 % of reading", "0.32", False),  # the digit is of the first alone
     ],
 )
 def test_authors_compute_with_more_digits_of_an_uncertainty_than_they_print(

@@ -523,6 +523,19 @@ def test_the_report_tells_why_there_is_no_expanded_uncertainty(tmp_path: Path) -
     assert f"U is not known: {why}" in tex
 
 
+def test_there_is_no_decision_where_draws_alone_have_a_value(tmp_path: Path) -> None:
+    """Of what is divided by a reading of 0: the search for an interval about no number would not end."""
+    code = (
+        "from loopsheet import Method, let, measured\n\nclass Speed(Method, source='own'):\n    'Speeds.'\n"
+        "    x = measured('mm', 'way')\n    y = measured('s', 'time')\n    q = let(x / y, 'speed')\n"
+    )
+    table, limit = "x [mm],y [s]\n5.0,2.0\n3.0,1.0\n5.1,0\n", '[limits]\nq = "<= 2.8 mm/s"\n'
+    report = Study(method_folder(tmp_path, code, table, limit)).computed
+    found = [each.decision for each in report.uncertain().conformities]
+    assert [each is Decision.CONFORMS for each in found] == [True, False, False]
+    assert report.uncertain().conformities[2].because == "it has no value"
+
+
 def test_limits_of_a_column_are_of_each_row_that_has_none_of_its_own() -> None:
     limits = [Limits(cell, Location(), None, None, Guard()) for cell in ("E", "E[2]", "m", "x")]
     cells = {"E": ("K", {(1,), (2,), (3,)}), "m": ("g", {()})}

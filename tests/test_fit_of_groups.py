@@ -11,6 +11,7 @@ import pytest
 import loopsheet
 from loopsheet.report.build import build
 from loopsheet.report.charts import BARS
+from loopsheet.report.cli import main
 from loopsheet.report.column import SheetError
 from loopsheet.report.method import words
 from loopsheet.report.study import Study
@@ -154,3 +155,19 @@ def test_what_is_refused_of_a_fit_of_groups(old: str, new: str, said: str) -> No
     code = METHOD.replace(old, new).replace("Method, fit", "Method, fit, mean")
     with pytest.raises(SheetError, match=re.escape(said)):
         exec(code, {**vars(words), **vars(loopsheet)})
+
+
+def test_what_a_fit_lacks_is_known_by_its_parameters(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whose cells begin nothing: what counts the rows does, and has a name that nobody wrote."""
+    rows = (*drawn(2, 4), ("few", "1", "1.0"))
+    folder = grouped.write(tmp_path, rows, HEAD, METHOD)
+    assert main(["check", str(folder)]) == 1
+    told = capsys.readouterr().out
+    assert "[few] #DOMAIN!" in told
+    assert "line_N1" not in told
+    (lacking,) = re.findall(r"(\w+)\[few\] #DOMAIN!", told)
+    toml = folder / "report.toml"
+    toml.write_text(f'{toml.read_text()}\n[expected]\n"{lacking}[few]" = "one row"\n')
+    assert main(["check", str(folder)]) == 0, capsys.readouterr().out

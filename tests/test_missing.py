@@ -283,6 +283,20 @@ def test_what_counts_has_its_name_for_itself(
     assert f"{name} is declared twice: it is the " in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("more", ["", "    away = let(b - mean(b), 'away')\n"])
+def test_who_expects_something_of_another_row_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], more: str
+) -> None:
+    """That a mean lacks the second reading is nothing odd about the third."""
+    expected = '[expected]\n"reading 2" = "lost"\n"reading 3" = "innocent"\n'
+    where = readings(tmp_path, more=expected, code=METHOD + more)
+    assert main(["check", str(where)]) == 1
+    told = capsys.readouterr().out
+    assert "reading 2, lost: b[2] has no value (#INPUT!)" in told
+    assert "reading 3 is expected to be odd (innocent), and is not" in told
+    assert "1 finding" in told
+
+
 def test_every_engine_counts_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = "x [m],y [m]\n1,2.1\n2,3.9\n3,\n4,8.2\n,9\n6,12.1\n"
     main(["check", str(readings(tmp_path / "r", table, code=SUMS))])

@@ -144,7 +144,7 @@ def test_what_a_manifest_says_of_the_report_is_compared(name: str, says: str, ca
     found = verify(campaign / "out", campaign)
     assert failed(found) == {"manifest": [name]}
     (told,) = (check.message for check in found.checks if not check.passed)
-    assert told == f"of its {name} the manifest says '{says}', and '{was}' when it is built again"
+    assert told == f"the {name} was '{says}', as the manifest says, and is '{was}' when it is built again"
     assert found.verdict.startswith("different")
 
 

@@ -178,9 +178,11 @@ def as_its_parts(columns: Mapping[str, Column], column: Column, aside: Sequence[
         {cell: rule.expression for cell, rule in parts if isinstance(rule, Formula)}
     )
     named, alike = _named(formula), list[Column]()
-    while named and not alike:  # a root of squares is shown as what is squared
+    root = isinstance(formula, Pow) and formula.exp.is_Rational and not formula.exp.is_Integer
+    while named and not alike:
         alike = [columns[name] for name in columns if name in named and _kind(columns[name]) == own]
-        rules = (columns[name].rule for name in named if own and name in columns)
+        # A root of squares is shown as what is squared, in other columns, too.
+        rules = (columns[name].rule for name in named if own and root and name in columns)
         named = set().union(*(_named(rule.expression) for rule in rules if isinstance(rule, Formula)))
     if not own and not _adds_up(formula, {each.name for each in alike}):
         return column

@@ -172,4 +172,6 @@ def check_expected(
 def rows(indices: Collection[Index], words: Mapping[Index, str]) -> str:
     """The rows that a cell has, and the words that stand for them."""
     known = listing(index_text(one) or "no index" for one in sorted(indices))
-    return f"{known}; or {listing(dict.fromkeys(words.values()))}" if words else known
+    told = [*words.values()]
+    alone = [word for word in dict.fromkeys(told) if told.count(word) == 1]  # of several rows it names none
+    return f"{known}; or {listing(alone)}" if alone else known

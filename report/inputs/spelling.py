@@ -16,6 +16,9 @@ _AS_DRAWN = str.maketrans(
 )
 """Signs that look alike: digits and letters, and the letters of three alphabets."""
 _DASHES = re.compile("[\u2010-\u2015\u2212\ufe58\ufe63\uff0d]")
+_VARIANTS = {chr(each) for each in range(0xFE00, 0xFE10)}
+"""What chooses between two drawings of one sign."""
+_WHOLE = re.compile(r"^(\d+)\.0+$")
 _ZEROS = re.compile(r"(?<![0-9.,])0+(?=[0-9])")
 _MARKS = re.compile(r"(?<=[^\W_])[-_.\s]+(?=[^\W_])|[_.]+$")
 """Marks within a word or that end it: one that begins a number is a sign, and ``Cl-`` is not ``Cl``."""
@@ -38,13 +41,16 @@ class Alike(NamedTuple):
 def same(word: str) -> str:
     """What a word has in common with those that differ from it in case, blanks or the form of a sign alone.
 
-    Dashes are one sign, and what is not drawn at all is a blank.
+    Dashes are one sign, what is not drawn at all is a blank, and a spreadsheet makes ``1.0`` of ``1``.
 
     >>> same("b 40") == same("B40"), same("A\u20131\u200b") == same("A-1"), same("B40") == same("B41")
     (True, True, False)
+    >>> same("A\ufe0f") == same("A"), same("1.0") == same("1"), same("1.10") == same("1.1")
+    (True, True, False)
     """
     plain = _DASHES.sub("-", unicodedata.normalize("NFKC", word).casefold())
-    return "".join(each for each in plain if not each.isspace() and unicodedata.category(each) != "Cf")
+    drawn = (each for each in plain if not each.isspace() and unicodedata.category(each) != "Cf")
+    return _WHOLE.sub(r"\1", "".join(each for each in drawn if each not in _VARIANTS))
 
 
 def in_case(word: str, other: str, rows: Mapping[str, Sequence[int]]) -> bool:

@@ -170,16 +170,24 @@ class _Oddities:
         """The tests of the rows that rest on several."""
         return {tests for cell in cells if len(tests := self.values.tests(cell)) > 1}
 
-    def reason(self, cell: Cell, says: str) -> str:
-        """Why somebody expects what is said of a cell; empty if nobody does. A loop rests on all tests."""
+    def reason(self, cell: Cell, says: str, by_test: bool = True) -> str:
+        """Why somebody expects what is said of a cell; empty if nobody does. A loop rests on all tests.
+
+        `by_test`: whether who expects something of a test expects it of its cells.
+        """
         found, tests = "", self.values.tests(cell)
         if cell.name in self.sheet.loop_of:
             tests = tuple((table.name, test) for table in self.inputs.tables for test in table.tests)
         for each in self.inputs.expected:
-            if each.covers(cell.name, cell.label, tests):
+            if (by_test or each.cell[0]) and each.covers(cell.name, cell.label, tests):
                 self.met[each.address].append(f"{cell.address} {says}")
                 found = found or each.reason
         return found
+
+    def is_expected(self, cell: Cell, says: str) -> bool:
+        """Whether somebody expects what is said of a cell, or of one that people know it by."""
+        every = (cell, *self.leads(cell))
+        return max([bool(self.reason(each, says or _no_value(each))) for each in every])
 
     # --- what has no value
 
@@ -209,11 +217,13 @@ class _Oddities:
         by_cause: dict[str, list[Cell]] = {}
         for cell in cells:
             by_cause.setdefault(f"{cell.status.code}: {cell.why}", []).append(cell)
-        causes = [f"{some(list(map(self.named, each)))} {cause}" for cause, each in by_cause.items()]
+        known = {cause: map(self.named, map(self.known_as, each)) for cause, each in by_cause.items()}
+        causes = [f"{some(list(each))} {cause}" for cause, each in known.items()]
         if (more := len(causes) - CAUSES) > 0:
             causes[CAUSES:] = [f"and {more} other causes" if more > 1 else "and another cause"]
         have = f": {len(cells)} of {self.size(column)} have" if column.axis is not None else " has"
-        return f"{column.name}{have} no value: {'; '.join(causes)}"
+        name = some([each.name for each in self.leads(cells[0])]) or column.name
+        return f"{name}{have} no value: {'; '.join(causes)}"
 
     def named(self, cell: Cell) -> str:
         """A cell by its address, with the name of its row if that has one: ``w[3] (S-17)``."""
@@ -235,7 +245,8 @@ class _Oddities:
             for row, cell in enumerate(self.values.cells(name)):
                 for rows, size, axis in self.values.left_out(name, row) if cell.value is not None else ():
                     over = f"over {rows} of {size} {self.sheet.rows_of(axis)}"
-                    which = foreseen if self.follows(cell, f"is {over}") else found
+                    # It is another test that is missing in the sum.
+                    which = foreseen if self.follows(cell, f"is {over}", by_test=False) else found
                     which.setdefault(over, []).extend(self.told_of(cell))
         told = ((over, self.first(dict.fromkeys(names))) for over, names in (found or foreseen).items())
         said = "; ".join(f"{some(n)} {'is' if len(n) == 1 else 'are'} {over}" for over, n in told)
@@ -260,7 +271,7 @@ class _Oddities:
         lacks = any(cell.status is not Status.OK for name in headline for cell in self.values.cells(name))
         said = "the result has a value" + (" where one is expected" if lacks or self.failed else "")
         if missing:
-            causes = dict.fromkeys((cell.culprit or cell).address for cell in missing)
+            causes = dict.fromkeys(self.known_as(cell.culprit or cell).address for cell in missing)
             has = "has" if len(missing) == 1 else "have"
             said = f"{some([cell.address for cell in missing])} of the result {has} no value"
             said += f", for want of {some(list(causes))}" * any(cell.culprit for cell in missing)
@@ -287,16 +298,30 @@ class _Oddities:
                 waiting += [each.name for each in reversed(self.sheet.dependents(self.sheet[one]))]
         return found
 
+    def leads(self, cell: Cell) -> list[Cell]:
+        """The cells of the same row to which one leads that no line declares: people know it by them."""
+        if cell.name not in self.report.workbook.aside:
+            return []
+        led, axis = {*self.leading_to(cell.name)}, self.sheet[cell.name].axis
+        return [
+            self.values.cell(column.name, cell.label)
+            for column in self.sheet.columns
+            if column.name in led and column.axis == axis
+        ]
+
+    def known_as(self, cell: Cell) -> Cell:
+        return next(iter(self.leads(cell)), cell)
+
     def first(self, some: Iterable[str]) -> list[str]:
         """Names, those of the result first."""
         return sorted(some, key=lambda name: name not in self.report.workbook.headline)
 
-    def follows(self, cell: Cell, says: str) -> bool:
+    def follows(self, cell: Cell, says: str, by_test: bool = True) -> bool:
         """Whether somebody expects what is said of a cell, or all errors that it may follow from."""
         behind = {cell.name, *(column.name for column in self.sheet.ancestors(self.sheet[cell.name]))}
         begun = cell.culprit or cell
         silent = self.report.marks.is_faultless(begun) and not self.reason(begun, _no_value(begun))
-        return bool(self.reason(cell, says)) or not (
+        return bool(self.reason(cell, says, by_test)) or not (
             silent or any(odd.name in behind for odd in self.failed.open)
         )
 
@@ -570,7 +595,7 @@ class _Odd:
 
     def __init__(self, look: _Oddities, cells: Iterable[Cell], says: str = "") -> None:
         self.cells = list(cells)
-        self.open = [cell for cell in self.cells if not look.reason(cell, says or _no_value(cell))]
+        self.open = [cell for cell in self.cells if not look.is_expected(cell, says)]
 
     def __bool__(self) -> bool:
         return bool(self.cells)

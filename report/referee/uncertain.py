@@ -43,8 +43,11 @@ MOST_MOVED = 300
 """Numbers that are looked for at once, at most: each takes an evaluation."""
 _HALVINGS = 40
 
-_SAID = re.compile(r"[uUs] = ([0-9]*\.?[0-9]*)(?:e[+-]?[0-9]+)?(?! ?%)(?=[ ,]|$)|.*\(([0-9]+)\)")
-"""A standard or expanded uncertainty or a standard deviation as it was stated; last digits in parentheses."""
+_SAID = re.compile(
+    r"(?!.* \+ )(?:[uUs] = ([0-9]*\.?[0-9]*)(?:e[+-]?[0-9]+)?(?! ?(?:%|ppm|digit))(?=[ ,]|$)|.*\(([0-9]+)\))"
+)
+"""A standard or expanded uncertainty or a standard deviation as it was stated; last digits in parentheses.
+No share of a reading, no number of digits, which count, and no sum of several."""
 
 Compute = Callable[[Inputs], Marks]
 """Computes some columns of a sheet for other inputs."""
@@ -244,6 +247,8 @@ def _rounded(said: str) -> float:
 
     >>> _rounded("u = 0.25 mm"), _rounded("12.3(5)"), _rounded("u = 1 % of reading"), _rounded("+-0.1 rect")
     (0.02, 0.1, 0.0, 0.0)
+    >>> _rounded("u = 2 digits"), _rounded("u = 200 ppm"), _rounded("u = 0.1 mm + 2 %")
+    (0.0, 0.0, 0.0)
     """
     found = _SAID.match(said)
     text = (found[1] or found[2]) if found else ""

@@ -138,7 +138,8 @@ def by_draws(draws: Array, budget: Budget, why: str = "") -> Budget:
     Budget
         Without a coverage factor where too many draws have no value.
     """
-    errors = draws - budget.value
+    errors = draws - budget.value  # of a cell without a value there are draws, and no errors
+    errors = errors[np.isfinite(errors)]
     if errors.size < (1 - WITHOUT) * SOME:
         return replace(budget, factor=math.nan, because="too many draws have no value")
     if not budget.is_known:

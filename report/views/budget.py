@@ -176,7 +176,7 @@ def notes(report: Report, budget: uncertain.Budget, draws: str = "--draws") -> I
         yield f"terms of second order make {share} of the variance: {budget.hold}, {draws} tells more"
     if budget.is_known and budget.u:
         if not math.isinf(budget.dof) and not math.isnan(budget.dof):
-            yield f"{budget.dof:.0f} effective degrees of freedom"
+            yield degrees_of_freedom(budget.dof).replace(" ", " effective ", 1)
         yield f"k {'is not known:' if math.isnan(budget.factor) else 'comes from'} {budget.because}"
     if (most := foremost(report, budget)) is not None:
         yield f"{most[0]} matters most: {percent(most[1])} of the variance"

@@ -223,7 +223,7 @@ const refused = (why) => `Nothing was pasted: ${why}.`;
 function pasteScalars(element, rows, read) {
   if (rows.some((fields) => fields.filter(Boolean).length > 1)) return refused("here stands one number in a row");
   const names = all("input[data-cell]", gridOf(element).tBodies[0]).map((input) => input.dataset.cell), first = names.indexOf(element.dataset.cell);
-  change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(withoutUnit(rows[n][0], name)))));
+  change((state) => names.slice(first, first + rows.length).forEach((name, n) => (state.parameters[name] = read(withoutUnit(rows[n].join(""), name)))));
 }
 
 // A block of texts by the names in its first line, without one from a cell on; by the numbers of rows where it has
