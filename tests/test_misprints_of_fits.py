@@ -112,3 +112,27 @@ def test_so_it_is_of_a_curve_to_which_a_search_leads(tmp_path: Path) -> None:
     table.write_text(text.replace(",44.82\n", ",55.90\n"), encoding="utf-8")
     first, *_ = Study(tmp_path).refereed.referee.explanations
     assert [told(change) for change in first.changes] == [("misprint", "y", (8,), "55.90", "44.82")]
+
+
+SUMS = """
+from loopsheet import Method, given, let
+
+class Sums(Method):
+    "Of three numbers."
+    a = given("m", "one")
+    b = given("m", "another")
+    c = given("m", "a third")
+    x = let(3 * a, "three of one")
+    z = let(a + b, "sum of two")
+    w = let(b + c, "sum of the others")
+"""
+
+
+@pytest.mark.parametrize("printed", ["0.19", "0.29", "7.19"])
+def test_a_digit_may_be_lost_by_more_than_ten_times(tmp_path: Path, printed: str) -> None:
+    """Beyond where a certificate says that nothing comes out there are slips: 0.19 for 2.19."""
+    published = "source,cell,index,value,unit\nT,x,,6.57,m\nT,z,,5.60,m\nT,w,,8.53,m\n"
+    more = f'[parameters]\na = "{printed} m"\nb = "3.41 m"\nc = "5.12 m"\n'
+    method_folder(tmp_path, SUMS, more=more, published=published)
+    first, *_ = Study(tmp_path).refereed.referee.explanations
+    assert [(each.cell, each.would_print) for each in first.changes] == [("a", "2.19")]

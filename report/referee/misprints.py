@@ -198,7 +198,10 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
             continue
         if cell.given:
             point, is_certain = _freed(search, problem, cell.n)
-            if is_certain:
+            ways = [*_slips_of(cell, np.array([]))]
+            if is_certain:  # where it was looked for
+                ways = [units for units in ways if not _is_in(_range(problem, cell.n), cell, units)]
+            if is_certain and not ways:
                 search.drop(certain=True)
                 continue
         else:
@@ -208,7 +211,7 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
         known = None if point is None else _alone(problem, cell, point)
         told = None if point is None else _told(cell, problem, problem.box, point, known)
         if cell.given:
-            told = _with_slips(problem, cell, told)
+            told = _with_slips(problem, cell, told, ways)
         if told is not None:
             alone = cell.given and _comes_out(problem, _at(problem, cell, told.units))
             yield search.explained([told.change], told.problem, told.box, told.best, alone)
@@ -216,13 +219,17 @@ def _misprinted(search: Search, cells: Iterable[_Cell]) -> Iterator[Explained]:
             search.drop(certain=False)
 
 
-def _with_slips(problem: Problem, cell: _Cell, told: _Told | None) -> _Told | None:
+def _is_in(ends: tuple[float, float], cell: _Cell, units: int) -> bool:
+    """Whether a given cell is looked for where it is printed otherwise."""
+    return ends[0] <= float(respelt(cell.printed, units).value) <= ends[1]
+
+
+def _with_slips(problem: Problem, cell: _Cell, told: _Told | None, ways: Sequence[int]) -> _Told | None:
     """The same with the slips that explain it as well from elsewhere: what is sought may have several roots.
 
     A slip stands before any other way to print a given cell, and before other slips one with which everything
-    comes out while all else is exactly as it is printed.
+    comes out while all else is exactly as it is printed. `ways`: how many units further slips print it.
     """
-    ways = [*_slips_of(cell, np.array([]))]
     if not ways:
         return told
     points = problem.restarted(np.stack([_at(problem, cell, units) for units in ways]))
