@@ -83,7 +83,9 @@ def test_it_says_of_how_many_cells_they_are(
 def test_nobody_looks_for_what_is_odd_in_them(report: Report, monkeypatch: pytest.MonkeyPatch) -> None:
     """That was told of the whole campaign already, and takes longer than to compare."""
     asked: list[str] = []
-    monkeypatch.setattr("loopsheet.report.judge.oddities.oddities", lambda own: asked.append(own.title) or ())
+    monkeypatch.setattr(
+        "loopsheet.report.judge.oddities.oddities", lambda own, _: asked.append(own.title) or ()
+    )
     stages.judged(report, every=False)
     assert not asked
     stages.evaluated(Prepared(report.inputs, report.sheet), report.algebra, stages.silent)

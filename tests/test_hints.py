@@ -36,7 +36,7 @@ WORDED = SHARED.replace("[[1, 2], [2, 3]]", '"batch"')
         ("report.toml", "", SHARED, "9:10", "the uncertainty of 2 in groups is stated twice"),
         ("report.toml", "", WORDED.replace("batch", "bathc"), "9:10", "a column of the table: x or y"),
         ("report.toml", "", '[limits]\nx = ">= 1 kg"\n', "7:5", "the limit of x is in 'kg'"),
-        ("report.toml", "", '[limits]\nx = ">= 1"\n', "7:5", "the limit of x has no unit: '1'"),
+        ("report.toml", "", '[limits]\nx = ">= 1"\n', "7:5", "the limit of x has no unit: '>= 1'"),
         ("report.toml", "", '[expected]\n"raeding 3" = "odd"\n', "7:1", "did you mean 'reading 3'?"),
         ("report.toml", "", '[expected]\n"reading 9" = "odd"\n', "7:1", "reading has no index '9'"),
         ("report.toml", "", '[uncertainty]\nz = "scatter"\n', "7:1", 'together: paired = ["x", "y"]'),

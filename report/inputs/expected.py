@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol, Self, TypeVar
@@ -152,11 +153,14 @@ def check_expected(
     first = [f"{table.row} {test}" for table in tables for test in table.tests[:1]]
     for each in expected:
         name, index = each.cell
+        several = isinstance(each, Expectation)  # may be of all rows of a word
         of, word = parts(each.address) or ("", "")
         if name not in cells and word and of in cells and () not in cells[of][1]:
-            findings.add("LS506", each.at, name=of, text=word, known=rows(cells[of][1], words.get(of, {})))
+            findings.add(
+                "LS506", each.at, name=of, text=word, known=rows(cells[of][1], words.get(of, {}), several)
+            )
             continue
-        own = [] if name or not isinstance(each, Expectation) else each.tables(tables)
+        own = each.tables(tables) if isinstance(each, Expectation) and not name else []
         is_other = not name and not own
         if is_other or ((name or not index) and name not in cells):
             near = suggest(name or each.address, [*called, *cells])
@@ -165,13 +169,13 @@ def check_expected(
             continue
         indices = cells[name][1] if name else {(test,) for table in own for test in table.tests}
         if index and index not in indices:
-            known = rows(indices, words.get(name, {}))
+            known = rows(indices, words.get(name, {}), several)
             findings.add("LS506", each.at, name=name or own[0].row, text=index_text(index), known=known)
 
 
-def rows(indices: Collection[Index], words: Mapping[Index, str]) -> str:
-    """The rows that a cell has, and the words that stand for them."""
+def rows(indices: Collection[Index], words: Mapping[Index, str], several: bool = False) -> str:
+    """The rows that a cell has, and the words that stand for one of them, or for `several`."""
     known = listing(index_text(one) or "no index" for one in sorted(indices))
-    told = [*words.values()]
-    alone = [word for word in dict.fromkeys(told) if told.count(word) == 1]  # of several rows it names none
+    told = Counter(words.values())
+    alone = [word for word, number in told.items() if several or number == 1]
     return f"{known}; or {listing(alone)}" if alone else known
