@@ -227,8 +227,15 @@ def test_accepting_knows_rows_by_their_words(tmp_path: Path, capsys: pytest.Capt
         (("1", "2", "x", "y"), False),
         (("2", "2", "x", "y"), False),
         (("7", "8", "x", "y"), False),
+        (("1" * 5000, "2", "x", "y"), False),
     ],
-    ids=["numbers of others", "its own number", "of several rows", "numbers of no row"],
+    ids=[
+        "numbers of others",
+        "its own number",
+        "of several rows",
+        "numbers of no row",
+        "thousands of digits",
+    ],
 )
 def test_no_row_is_called_by_the_number_of_another(
     operators: tuple[str, ...], refused: bool, tmp_path: Path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -39,6 +40,8 @@ _HEAD = re.compile(r"(?P<name>u\([^()\[\]]*\)|[^()\[\]]+?)\s*(?:\[(?P<unit>[^\[\
 _OTHER_BRACKETS = re.compile(r"(?P<name>\w+)\s*[(\[{<]\s*(?P<unit>[^()\[\]{}<>]+)")
 _EXPANDED = re.compile(r"U\s?\((?P<name>[^()\[\]]*)\)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 """The head of a column of expanded uncertainties, which there is not."""
+_MOST_DIGITS = 100
+"""Of a word that may be a number; Python refuses to read thousands."""
 _TEST = re.compile(r"0*[1-9][0-9]{0,8}")
 
 
@@ -459,16 +462,21 @@ def _check_words(table: CsvTable, fields: Sequence[Field], name: str, findings: 
         return
     words = list(dict.fromkeys(each.text for each in fields))
     for number, word in enumerate(words, start=1):
-        if word.isdecimal() and number != int(word) in range(1, len(words) + 1):
+        if number != _number_in(word) in range(1, len(words) + 1):
             at, what = next(table.at(each) for each in fields if each.text == word), "the number of another"
             findings.add("LS318", at, name=name, what=what, text=word)
 
 
+def _number_in(word: str) -> int | None:
+    """The number of a row that a word may be taken for: none has as many digits as some words."""
+    return int(word) if word.isdecimal() and len(word) <= _MOST_DIGITS else None
+
+
 def _check_names(table: CsvTable, fields: Mapping[int, Field], name: str, findings: Findings) -> None:
     """Refuse the number of another row as the word of one: nobody knows which of them ``x[2]`` is."""
-    texts = [each.text for each in fields.values()]
+    times = Counter(each.text for each in fields.values())
     for test, each in fields.items():
-        if each.text.isdecimal() and test != int(each.text) in fields and texts.count(each.text) == 1:
+        if test != _number_in(each.text) in fields and times[each.text] == 1:
             findings.add("LS318", table.at(each), name=name, what="the number of another row", text=each.text)
             return
 
