@@ -27,7 +27,7 @@ def figures(report: Report) -> tuple[FigureSpec, ...]:
         return ()
     out = sum(verdict.verdict == UNREACHABLE for verdict in drawn)
     said = {0: "none lies outside its bar", 1: "one lies outside its bar"}.get(
-        out, f"{out} {'lies' if out == 1 else 'lie'} outside theirs"
+        out, f"{out} lie outside theirs"
     )
     drawn_so = FigureSpec(
         FIGURE,

@@ -187,7 +187,8 @@ class _Oddities:
     def is_expected(self, cell: Cell, says: str) -> bool:
         """Whether somebody expects what is said of a cell, or of one that people know it by."""
         every = (cell, *self.leads(cell))
-        return max([bool(self.reason(each, says or _no_value(each))) for each in every])
+        reasons = [self.reason(each, says or _no_value(each)) for each in every]  # each is met
+        return any(reasons)
 
     # --- what has no value
 
@@ -312,9 +313,9 @@ class _Oddities:
     def known_as(self, cell: Cell) -> Cell:
         return next(iter(self.leads(cell)), cell)
 
-    def first(self, some: Iterable[str]) -> list[str]:
+    def first(self, names: Iterable[str]) -> list[str]:
         """Names, those of the result first."""
-        return sorted(some, key=lambda name: name not in self.report.workbook.headline)
+        return sorted(names, key=lambda name: name not in self.report.workbook.headline)
 
     def follows(self, cell: Cell, says: str, by_test: bool = True) -> bool:
         """Whether somebody expects what is said of a cell, or all errors that it may follow from."""

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cells.marks import Margin
 from ..judge.oddities import REACH
 from ..result.result import Report
 
@@ -25,11 +24,6 @@ def outside(report: Report) -> Mapping[str, NDArray[np.bool_]]:
         from .propagation import Spread  # only what is odd needs it
 
         spread = Spread(report.inputs, marks.values)
-        for margin in asked:
-            found[margin.column.name] &= ~_explained(margin, report, spread.u(margin.column.name))
+        for name in (margin.column.name for margin in asked):
+            found[name] &= -marks.values.value[name] > REACH * np.nan_to_num(spread.u(name))
     return found
-
-
-def _explained(margin: Margin, report: Report, u: NDArray[np.float64]) -> NDArray[np.bool_]:
-    explained: NDArray[np.bool_] = -report.marks.values.value[margin.column.name] <= REACH * np.nan_to_num(u)
-    return explained

@@ -67,17 +67,13 @@ def _warnings(plan: Planned) -> list[str]:
 def _beyond(plan: Planned) -> Iterator[str]:
     """Where the curve would be known from no measurement."""
     name = next(iter(plan.u))  # what was chosen
-    measured = sorted(plan.followed.values.cells(name), key=lambda cell: cell.value or 0.0)
-    low, high = measured[0], measured[-1]
-    values = plan.report.values.value[name].tolist()
-    tests = [
-        str(test)
-        for test, value in zip(plan.report.inputs.only.tests, values, strict=True)
-        if not (low.value or 0.0) <= value <= (high.value or 0.0)
-    ]
-    if tests:
+    measured, planned = (each.values.value[name].tolist() for each in (plan.followed, plan.report))
+    ends = min(measured), max(measured)
+    rows = zip(plan.report.inputs.only.tests, planned, strict=True)
+    if tests := [str(test) for test, value in rows if not ends[0] <= value <= ends[1]]:
         there = f"test{'s' * (len(tests) > 1)} {listing(tests, last='and')}"
-        known = span(*map(plan.followed.text, (low, high)))
+        cells = list(plan.followed.values.cells(name))
+        known = span(*(plan.followed.text(cells[measured.index(end)]) for end in ends))
         yield f"{there}: {name} beyond what was measured, {known}; the curve is extrapolated there"
 
 
